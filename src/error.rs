@@ -1,0 +1,62 @@
+//! The library's one error type: what went wrong, where, and which exit code the command line gives it.
+
+use std::path::{Path, PathBuf};
+
+/// Every failure that a user can meet, as one line.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A value in an input file: file, key, value, reason.
+    #[error("{file}: {key} = {value}: {reason}")]
+    Value { file: String, key: String, value: String, reason: String },
+    /// An input file that cannot be used as a whole (missing, malformed, truncated, foreign).
+    #[error("{}: {reason}", file.display())]
+    File { file: PathBuf, reason: String },
+    /// A wrong argument or combination of arguments.
+    #[error("{0}")]
+    Argument(String),
+    /// A check that the user asked for did not hold.
+    #[error("{0}")]
+    Check(String),
+    /// The machine failed: disk, memory, permissions.
+    #[error("{}: {source}", path.display())]
+    Machine { path: PathBuf, source: std::io::Error },
+    /// A number that must be finite is not: names the table and the place in it.
+    #[error("{table}: not a finite number at {place}; nothing was written")]
+    NotFinite { table: String, place: String },
+    /// The user stopped the run.
+    #[error("interrupted; what stood in the output folder before is untouched")]
+    Interrupted,
+}
+
+/// Shorthand used throughout the library.
+pub type Result<T> = std::result::Result<T, Error>;
+
+impl Error {
+    /// 1: a check did not hold; 2: bad arguments or input; 3: the machine failed (or the run was stopped).
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Error::Check(_) => 1,
+            Error::Value { .. } | Error::File { .. } | Error::Argument(_) => 2,
+            Error::Machine { .. } | Error::NotFinite { .. } | Error::Interrupted => 3,
+        }
+    }
+
+    pub fn file(file: impl AsRef<Path>, reason: impl ToString) -> Self {
+        Error::File { file: file.as_ref().to_path_buf(), reason: reason.to_string() }
+    }
+
+    pub fn machine(path: impl AsRef<Path>, source: std::io::Error) -> Self {
+        Error::Machine { path: path.as_ref().to_path_buf(), source }
+    }
+
+    /// Reading failed: a missing or unreadable input is the user's to mend (2), the rest is the machine's (3).
+    pub fn reading(path: impl AsRef<Path>, source: std::io::Error) -> Self {
+        use std::io::ErrorKind::*;
+        match source.kind() {
+            NotFound | PermissionDenied | InvalidData | IsADirectory | NotADirectory => {
+                Error::file(path, source)
+            }
+            _ => Error::machine(path, source),
+        }
+    }
+}

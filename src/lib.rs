@@ -1,0 +1,27 @@
+//! `tyndall` bakes lookup tables for planetary atmospheres.
+//!
+//! The pipeline, one way: preset → spectrum + medium → optical depth → single scattering → orders →
+//! tables → colour → files. A preview, an engine or `tyndall sample` then reads the files alone.
+//!
+//! In scope: scalar radiative transfer in a spherical shell, any number of constituents, absorbers, a
+//! Lambertian ground, one star. Out of scope: polarisation, refraction, horizontal variation, clouds with
+//! edges, thermal emission.
+//!
+//! Who may know whom: `spectrum`, `medium` and `table` know nobody above them; `transport` knows no preset,
+//! file or colour; `reference` shares the medium with `transport` and no line of its integration; `bake`
+//! joins them; `export` sees finished tables only; `commands` sees all.
+//!
+//! Conventions. SI units and f64 outside the transport loops, nanometres for wavelengths only. `mu`, `mu_s`
+//! and `nu` are cosines of the view zenith, sun zenith and view–sun angles; directions point away from the
+//! observer: into the view, towards the sun. `r` is a radius from the planet's centre, `altitude` a height
+//! over its ground. Phase functions integrate to 1 over the sphere, so that Elek & Kmoch's divisions of the
+//! scattering coefficient by 4π (Eqs. 7, 12) are absent; the factor 1/π of a Lambertian ground, absent from
+//! their Eq. 8, is present. Radiances are per unit solar irradiance on a plane normal to the beam (1/sr).
+
+pub mod error;
+pub mod isa;
+pub mod medium;
+pub mod points;
+pub mod reference;
+
+pub use error::{Error, Result};

@@ -1,0 +1,95 @@
+//! Points of view as CSV, the form that the oracles share (columns found by name), and answers to them.
+
+use crate::error::{Error, Result};
+use std::io::Write;
+use std::path::Path;
+
+/// An observer and a view, all angles at the observer, inside or outside the atmosphere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Height over the ground, m.
+    pub altitude: f64,
+    /// Cosine of the zenith angle of the direction looked into, +1 up.
+    pub mu: f64,
+    /// Cosine of the zenith angle of the direction towards the sun.
+    pub mu_s: f64,
+    /// Azimuth between view and sun, degrees; 0 looks towards the sun.
+    pub azimuth_deg: f64,
+}
+
+impl Point {
+    /// Cosine of the angle between view and sun.
+    pub fn nu(&self) -> f64 {
+        let sines = ((1.0 - self.mu * self.mu) * (1.0 - self.mu_s * self.mu_s)).max(0.0).sqrt();
+        self.mu * self.mu_s + sines * libm::cos(self.azimuth_deg.to_radians())
+    }
+}
+
+const COLUMNS: [&str; 4] = ["altitude_m", "mu_view", "mu_sun", "azimuth_deg"];
+
+/// Reads points from a CSV file. Errors name the file, line, column and value.
+pub fn read_points(path: &Path) -> Result<Vec<Point>> {
+    let mut reader =
+        csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(|e| Error::file(path, e))?;
+    let header = reader.headers().map_err(|e| Error::file(path, e))?.clone();
+    let mut index = [0; 4];
+    for (slot, name) in index.iter_mut().zip(COLUMNS) {
+        *slot = header
+            .iter()
+            .position(|h| h == name)
+            .ok_or_else(|| Error::file(path, format!("column {name} is missing (needed: {COLUMNS:?})")))?;
+    }
+    let mut points = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|e| Error::file(path, e))?;
+        let line = record.position().map_or(0, |p| p.line());
+        let mut v = [0.0; 4];
+        for (k, slot) in v.iter_mut().enumerate() {
+            *slot = number(path, line, COLUMNS[k], record.get(index[k]).unwrap_or(""))?;
+        }
+        points.push(Point { altitude: v[0], mu: v[1], mu_s: v[2], azimuth_deg: v[3] });
+    }
+    Ok(points)
+}
+
+fn number(path: &Path, line: u64, column: &str, text: &str) -> Result<f64> {
+    let refuse = |reason: &str| Error::Value {
+        file: path.display().to_string(),
+        key: format!("line {line}, {column}"),
+        value: text.to_string(),
+        reason: reason.to_string(),
+    };
+    let value: f64 = text.parse().map_err(|_| refuse("not a number"))?;
+    if !value.is_finite() {
+        return Err(refuse("not a finite number"));
+    }
+    match column {
+        "altitude_m" if value < 0.0 => Err(refuse("below the ground")),
+        "mu_view" | "mu_sun" if value.abs() > 1.0 => Err(refuse("a cosine is between -1 and 1")),
+        _ => Ok(value),
+    }
+}
+
+/// One value of an answer: the channel (a wavelength in nm), radiance and standard error, both 1/sr.
+pub struct Answer {
+    pub wavelength_nm: f64,
+    pub radiance: f64,
+    pub stderr: Option<f64>,
+}
+
+/// Writes answers as CSV: the four columns of the point, then wavelength, radiance and standard error.
+pub fn write_answers(
+    out: &mut dyn Write,
+    rows: impl Iterator<Item = (Point, Answer)>,
+) -> std::io::Result<()> {
+    writeln!(out, "{},wavelength_nm,radiance_per_sr,stderr_per_sr", COLUMNS.join(","))?;
+    for (p, a) in rows {
+        let stderr = a.stderr.map(|s| format!("{s:.3e}")).unwrap_or_default();
+        writeln!(
+            out,
+            "{},{},{},{},{},{:.8e},{}",
+            p.altitude, p.mu, p.mu_s, p.azimuth_deg, a.wavelength_nm, a.radiance, stderr
+        )?;
+    }
+    Ok(())
+}
