@@ -20,8 +20,8 @@
 
 pub mod error;
 pub mod isa;
+pub mod lanes;
 pub mod medium;
 pub mod points;
-pub mod reference;
 
 pub use error::{Error, Result};
