@@ -66,6 +66,12 @@ pub fn exp(x: f32) -> f32 {
     if x < -87.0 { 0.0 } else { p * scale }
 }
 
+impl Default for Lanes {
+    fn default() -> Self {
+        Lanes::ZERO
+    }
+}
+
 impl Index<usize> for Lanes {
     type Output = f32;
     #[inline(always)]

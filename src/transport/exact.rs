@@ -1,0 +1,285 @@
+//! Radiance along one ray by direct integration of the solved field: the truth that tables are held against.
+//!
+//! Gauss–Legendre in length along the ray, between every fine level, kink, long arc and the edge of the
+//! planet's shadow; transmittance to the sun integrated afresh at every point; cubic interpolation of the
+//! field. Slow (about half a millisecond a view) and careful.
+
+use super::levels::locate;
+use super::operator::interpolate;
+use super::optics::Optics;
+use super::quadrature::horizon_cosine;
+use super::rays::LONGEST_ARC;
+use super::solve::{Batch, Solution};
+use super::view::View;
+use crate::lanes::{Lanes, WIDTH};
+use std::f64::consts::{FRAC_1_PI, PI};
+
+/// The light of one ray, by where it was last scattered, per unit solar irradiance, 1/sr.
+#[derive(Clone, Debug)]
+pub struct Radiance {
+    /// `[wavelength]`: scattered by air and everything in it.
+    pub scattering: Vec<f64>,
+    /// `[wavelength]`: from the ground, attenuated on its way.
+    pub ground: Vec<f64>,
+    /// `[wavelength]`: transmittance of the whole ray.
+    pub transmittance: Vec<f64>,
+}
+
+const GAUSS: [(f64, f64); 3] =
+    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+/// Optical depth along the ray that one Gauss interval may span.
+const STEP_DEPTH: f64 = 0.7;
+
+impl Solution {
+    /// Radiance that arrives along a view that is inside the atmosphere or at its top. `last` lists the
+    /// constituents whose scattered light counts.
+    pub fn radiance(&self, view: &View, last: &[usize]) -> Radiance {
+        let mut out = Radiance { scattering: vec![], ground: vec![], transmittance: vec![] };
+        for batch in &self.batches {
+            let (s, g, t) = self.march(batch, view, last);
+            let n = batch.optics.count;
+            out.scattering.extend(s.0[..n].iter().map(|&v| f64::from(v)));
+            out.ground.extend(g.0[..n].iter().map(|&v| f64::from(v)));
+            out.transmittance.extend(t.0[..n].iter().map(|&v| f64::from(v)));
+        }
+        out
+    }
+
+    fn march(&self, batch: &Batch, view: &View, last: &[usize]) -> (Lanes, Lanes, Lanes) {
+        let shells = &self.geometry.shells;
+        let optics = &batch.optics;
+        let track = Track::new(view);
+        let phases: Vec<[Lanes; 3]> =
+            last.iter().map(|&c| self.phase_terms(optics, c, view.nu as f32)).collect();
+        let mut scattered = Lanes::ZERO;
+        let mut depth = Lanes::ZERO;
+        let mut columns = vec![0.0; shells.constituents];
+        let mut behind = columns.clone();
+        for (shell, t0, t1) in self.segments(&track, view, optics) {
+            for (place, weight) in GAUSS {
+                let t = t0 + (t1 - t0) * place;
+                columns.fill(0.0);
+                shells.add_path(shell, track.b2, t0, t, &mut columns);
+                let through = (depth + depth_of(&columns, optics)) * -1.0;
+                for (all, part) in columns.iter_mut().zip(&behind) {
+                    *all += part;
+                }
+                let source = self.source(batch, view, &track, (shell, t), last, &phases, &columns);
+                scattered += through.exp() * source * (weight * (t1 - t0)) as f32;
+            }
+            columns.fill(0.0);
+            shells.add_path(shell, track.b2, t0, t1, &mut columns);
+            depth += depth_of(&columns, optics);
+            for (all, part) in behind.iter_mut().zip(&columns) {
+                *all += part;
+            }
+        }
+        let transmittance = (depth * -1.0).exp();
+        let ground = if view.hits_ground {
+            transmittance * self.ground_radiance(batch, track.mu_s(view, track.end(shells.edges[0])))
+        } else {
+            Lanes::ZERO
+        };
+        (scattered, ground, transmittance)
+    }
+
+    /// Radiance of the ground: albedo/π times direct and diffuse irradiance (Elek & Kmoch Eqs. 8, 11).
+    fn ground_radiance(&self, batch: &Batch, mu_s: f64) -> Lanes {
+        let mut columns = vec![0.0; self.geometry.shells.constituents];
+        let direct =
+            self.to_sun(batch, self.geometry.shells.edges[0], mu_s, &mut columns) * mu_s.max(0.0) as f32;
+        let diffuse = interpolate(&batch.state.ground, &self.geometry.axis, mu_s as f32);
+        batch.optics.albedo * FRAC_1_PI as f32 * (direct + diffuse)
+    }
+
+    /// Transmittance from radius `r` to a sun of zenith cosine `mu_s`; 0 behind the planet.
+    /// The columns passed are left in `columns`.
+    fn to_sun(&self, batch: &Batch, r: f64, mu_s: f64, columns: &mut [f64]) -> Lanes {
+        let shells = &self.geometry.shells;
+        if mu_s < horizon_cosine(r, shells.edges[0]) {
+            return Lanes::ZERO;
+        }
+        shells.add_to_top(r, mu_s, columns);
+        (depth_of(columns, &batch.optics) * -1.0).exp()
+    }
+
+    /// Light sent along the ray per unit length at one point, 1/m/sr.
+    fn source(
+        &self,
+        batch: &Batch,
+        view: &View,
+        track: &Track,
+        (shell, t): (usize, f64),
+        last: &[usize],
+        phases: &[[Lanes; 3]],
+        columns: &[f64],
+    ) -> Lanes {
+        let r = (track.b2 + t * t).sqrt();
+        let mu_s = track.mu_s(view, t);
+        let mut sunward = vec![0.0; columns.len()];
+        let sun = self.to_sun(batch, r, mu_s, &mut sunward);
+        let moments = self.moments(batch, r, mu_s);
+        let factors = self.angular_factors(t / r, mu_s, view.nu);
+        let mut sum = Lanes::ZERO;
+        for (&c, [phase, second, third]) in last.iter().zip(phases) {
+            let (to_eye, to_sun) = (
+                batch.optics.scattering[c] * columns[c] as f32,
+                batch.optics.scattering[c] * sunward[c] as f32,
+            );
+            let squares = to_eye * to_eye + to_sun * to_sun;
+            let phase = *phase + (to_eye + to_sun) * *second * 0.5 + squares * *third * 0.25;
+            let scattering = batch.optics.scattering[c] * self.geometry.shells.density(shell, c, r) as f32;
+            let mut often = Lanes::ZERO;
+            for ((&(l, _), factor), moment) in self.basis.terms.iter().zip(&factors).zip(&moments) {
+                let weight = (factor * (2 * l + 1) as f64 / (4.0 * PI)) as f32;
+                often += batch.optics.legendre[c][l] * *moment * weight;
+            }
+            sum += scattering * (sun * phase + often);
+        }
+        sum
+    }
+
+    /// A constituent's phase function and the coefficients that carry its forward peak to the second and third
+    /// order, at the angle between view and sun.
+    fn phase_terms(&self, optics: &Optics, c: usize, nu: f32) -> [Lanes; 3] {
+        let [second, third] = self.orders.second_and_third();
+        let (c1, c2) = optics.peaks[c].as_ref().map_or((Lanes::ZERO, Lanes::ZERO), |p| p.at(nu));
+        [optics.phase[c].value(nu), c1 * second, c2 * third]
+    }
+
+    /// P̄_lm(mu) sin^m θ s^min(m,2) cos mφ for every term.
+    fn angular_factors(&self, mu: f64, mu_s: f64, nu: f64) -> Vec<f64> {
+        let (sine2, s2) = ((1.0 - mu * mu).max(0.0), (1.0 - mu_s * mu_s).max(0.0));
+        let mut q = vec![0.0f32; self.basis.modes];
+        let x = (nu - mu * mu_s) as f32;
+        super::kernels::azimuth_factors(x, s2 as f32, sine2 as f32, sine2.sqrt() as f32, &mut q);
+        let p = self.basis.polynomials(mu);
+        p.iter().zip(&self.basis.orders).map(|(p, &m)| p * f64::from(q[m])).collect()
+    }
+
+    /// Moments at a radius and sun height, cubic in both (zero below the sun axis).
+    fn moments(&self, batch: &Batch, r: f64, mu_s: f64) -> Vec<Lanes> {
+        let axis = &self.geometry.axis;
+        let state = &batch.state;
+        let mut out = vec![Lanes::ZERO; state.terms];
+        let (node, t) = axis.locate(mu_s as f32);
+        if t < 0.0 {
+            return out;
+        }
+        let (level, _) = locate(&self.geometry.levels.coarse, r);
+        let suns = cubic_weights(node as usize, state.suns, |k| k as f64, f64::from(node) + f64::from(t));
+        let radii = &self.geometry.levels.coarse;
+        let rows = cubic_weights(level, radii.len(), |k| radii[k], r);
+        for (i, row) in rows {
+            for (k, sun) in &suns {
+                let at = (i * state.suns + k) * state.terms;
+                for (out, m) in out.iter_mut().zip(&state.moments[at..]) {
+                    *out += *m * (row * sun) as f32;
+                }
+            }
+        }
+        out
+    }
+
+    /// Pieces of the ray inside one shell each, short in arc and optical depth, cut at the shadow's edge.
+    fn segments(&self, track: &Track, view: &View, optics: &Optics) -> Vec<(usize, f64, f64)> {
+        let shells = &self.geometry.shells;
+        let mut cuts: Vec<f64> = vec![track.start, track.end(shells.edges[0])];
+        if !view.hits_ground {
+            cuts[1] = track.crossing(*shells.edges.last().expect("shells have edges"));
+        }
+        let (first, last) = (cuts[0], cuts[1]);
+        for &edge in &shells.edges {
+            if edge * edge > track.b2 {
+                let t = track.crossing(edge);
+                cuts.extend([-t, t]);
+            }
+        }
+        cuts.push(0.0);
+        cuts.extend(track.shadow_edges(view, shells.edges[0]));
+        cuts.retain(|&t| t >= first && t <= last);
+        cuts.sort_by(f64::total_cmp);
+        cuts.dedup();
+        let mut out = Vec::new();
+        for pair in cuts.windows(2) {
+            let middle = (track.b2 + 0.25 * (pair[0] + pair[1]) * (pair[0] + pair[1])).sqrt();
+            let shell = shells.find(middle);
+            let mut columns = vec![0.0; shells.constituents];
+            shells.add_path(shell, track.b2, pair[0], pair[1], &mut columns);
+            let depth = depth_of(&columns, optics).0.iter().fold(0.0f32, |a, &b| if b > a { b } else { a });
+            let arc = (pair[1] - pair[0]) / middle;
+            let parts =
+                (f64::from(depth) / STEP_DEPTH).max(arc / LONGEST_ARC).ceil().clamp(1.0, 64.0) as usize;
+            let step = (pair[1] - pair[0]) / parts as f64;
+            out.extend(
+                (0..parts).map(|k| (shell, pair[0] + step * k as f64, pair[0] + step * (k + 1) as f64)),
+            );
+        }
+        out
+    }
+}
+
+fn depth_of(columns: &[f64], optics: &Optics) -> Lanes {
+    let mut depth = Lanes::ZERO;
+    for (column, e) in columns.iter().zip(&optics.extinction) {
+        for w in 0..WIDTH {
+            depth[w] += e[w] * *column as f32;
+        }
+    }
+    depth
+}
+
+/// Weights of Lagrange's cubic through the two nodes on either side (fewer at the ends).
+fn cubic_weights(below: usize, count: usize, node: impl Fn(usize) -> f64, x: f64) -> Vec<(usize, f64)> {
+    let first = below.saturating_sub(1);
+    let last = (below + 2).min(count - 1);
+    (first..=last)
+        .map(|k| {
+            let others = (first..=last).filter(|&j| j != k);
+            (k, others.fold(1.0, |w, j| w * (x - node(j)) / (node(k) - node(j))))
+        })
+        .collect()
+}
+
+/// The straight line of a ray: lengths t along it count from its point nearest the planet's centre.
+struct Track {
+    b2: f64,
+    start: f64,
+}
+
+impl Track {
+    fn new(view: &View) -> Self {
+        Track { b2: view.r * view.r * (1.0 - view.mu * view.mu), start: view.r * view.mu }
+    }
+
+    fn crossing(&self, radius: f64) -> f64 {
+        (radius * radius - self.b2).max(0.0).sqrt()
+    }
+
+    /// Where the ray meets the ground.
+    fn end(&self, ground: f64) -> f64 {
+        -self.crossing(ground)
+    }
+
+    /// Cosine of the sun's zenith angle at a point of the ray.
+    fn mu_s(&self, view: &View, t: f64) -> f64 {
+        let r = (self.b2 + t * t).sqrt();
+        ((view.r * view.mu_s + (t - self.start) * view.nu) / r).clamp(-1.0, 1.0)
+    }
+
+    /// Where the line crosses the cylinder of the planet's shadow.
+    fn shadow_edges(&self, view: &View, ground: f64) -> Vec<f64> {
+        // A point at distance s from the start lies r_s² − (r_s·L)² from the shadow's axis, squared.
+        let along = view.r * view.mu_s;
+        let a = 1.0 - view.nu * view.nu;
+        let half_b = view.r * view.mu - along * view.nu;
+        let c = view.r * view.r - along * along - ground * ground;
+        let root = half_b * half_b - a * c;
+        if a < 1e-14 || root <= 0.0 {
+            return Vec::new();
+        }
+        let root = root.sqrt();
+        let edges = [(-half_b - root) / a, (-half_b + root) / a];
+        edges.iter().filter(|&&s| along + s * view.nu < 0.0).map(|s| s + self.start).collect()
+    }
+}

@@ -1,0 +1,202 @@
+//! Light along one ray for many sun positions at once: what tables are filled from.
+
+use super::azimuth::{Pairs, SunAxis};
+use super::kernels::{self, Field, Scratch, SingleGroup, SingleLight};
+use super::moments::Basis;
+use super::operator::kernel_for;
+use super::optics::{Optics, PhaseLanes};
+use super::rays::{Path, Ray};
+use super::solve::{Batch, Solution};
+use super::state::Refinement;
+use crate::lanes::{Lanes, WIDTH};
+
+pub use super::azimuth::Pairs as SunPairs;
+
+/// Intervals of the sun axis on which fields are looked up for each of the solver's.
+const REFINEMENT: usize = 4;
+
+/// The light of a batch of wavelengths, by groups of constituents that scatter it last.
+pub struct Painter<'a> {
+    solution: &'a Solution,
+    batch: &'a Batch,
+    axis: SunAxis,
+    groups: Vec<Group>,
+}
+
+struct Group {
+    single: SingleGroup,
+    basis: Basis,
+    field: Field,
+    /// First constituent of the group, for its phase function and forward peak.
+    first: usize,
+    scattering: Vec<Lanes>,
+}
+
+/// Which parts of the light a table wants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    Single,
+    Multiple,
+    Both,
+}
+
+/// Light along one ray, `[group][pair]`, per unit solar irradiance.
+#[derive(Default)]
+pub struct RayLight {
+    /// Scattered once, without the phase function (and with what multiple scattering by small angles adds to
+    /// a forward peak, as if it had been scattered once).
+    pub single: Vec<Lanes>,
+    /// Scattered more often, 1/sr.
+    pub multiple: Vec<Lanes>,
+    /// Optical depth of the ray.
+    pub depth: Lanes,
+    scratch: Scratch,
+    deeper: Vec<Lanes>,
+}
+
+impl<'a> Painter<'a> {
+    /// `groups`: lists of constituents; those of one group share a phase function.
+    pub fn new(solution: &'a Solution, batch: &'a Batch, groups: &[Vec<usize>]) -> Self {
+        let axis = solution.geometry.axis.refined(REFINEMENT);
+        let groups = groups.iter().filter(|g| !g.is_empty()).map(|g| group(solution, batch, g)).collect();
+        Painter { solution, batch, axis, groups }
+    }
+
+    /// Number of groups.
+    pub fn groups(&self) -> usize {
+        self.groups.len()
+    }
+
+    /// Light that arrives at radius `r` from zenith cosine `mu`, for all pairs.
+    pub fn ray(&self, r: f64, mu: f64, hits_ground: bool, pairs: &Pairs, wanted: Wanted, out: &mut RayLight) {
+        let geometry = &self.solution.geometry;
+        let path = Path::new(&geometry.shells, &geometry.levels, r, mu, hits_ground);
+        let count = self.groups.len() * pairs.len();
+        for values in [&mut out.single, &mut out.multiple] {
+            values.clear();
+            values.resize(count, Lanes::ZERO);
+        }
+        crate::isa::run(
+            #[inline(always)]
+            || {
+                let ray = Ray::new(&path, &geometry.levels, &self.batch.optics.extinction, false);
+                out.depth = ray.depth;
+                if wanted != Wanted::Single {
+                    self.multiple(&path, mu as f32, pairs, out);
+                }
+                self.single(&path, &ray, mu as f32, pairs, out);
+            },
+        );
+    }
+
+    #[inline(always)]
+    fn multiple(&self, path: &Path, mu: f32, pairs: &Pairs, out: &mut RayLight) {
+        let ray = Ray::new(path, &self.solution.geometry.levels, &self.batch.optics.extinction, true);
+        for (group, out_group) in self.groups.iter().zip(out.multiple.chunks_exact_mut(pairs.len())) {
+            let kernel = kernel_for(group.basis.modes);
+            kernel(&ray, mu, &group.field, &self.axis, &group.basis, pairs, &mut out.scratch, out_group);
+        }
+    }
+
+    #[inline(always)]
+    fn single(&self, path: &Path, ray: &Ray, mu: f32, pairs: &Pairs, out: &mut RayLight) {
+        let optics = &self.batch.optics;
+        let count = pairs.len();
+        for (g, group) in self.groups.iter().enumerate() {
+            let once = &mut out.single[g * count..][..count];
+            out.deeper.clear();
+            let peaked = group.single.deeper.is_some();
+            out.deeper.resize(if peaked { count } else { 0 }, Lanes::ZERO);
+            let behind = if peaked { path.depths(&group.scattering) } else { Vec::new() };
+            let mut light = SingleLight { once, deeper: &mut out.deeper };
+            kernels::single(
+                ray,
+                &self.batch.sunlight,
+                &group.single,
+                &behind,
+                pairs,
+                &mut out.scratch,
+                &mut light,
+            );
+            if peaked {
+                let multiple = &mut out.multiple[g * count..][..count];
+                self.add_peak(optics, group, mu, pairs, once, multiple, &out.deeper);
+            }
+        }
+    }
+
+    /// Adds the forward peak's higher orders: near the peak to single scattering, which shares its shape, and
+    /// away from it to multiple scattering, whose ripples it fills.
+    #[inline(always)]
+    fn add_peak(
+        &self,
+        optics: &Optics,
+        group: &Group,
+        mu: f32,
+        pairs: &Pairs,
+        once: &mut [Lanes],
+        multiple: &mut [Lanes],
+        deeper: &[Lanes],
+    ) {
+        let Some(peak) = &optics.peaks[group.first] else { return };
+        let phase: &PhaseLanes = &optics.phase[group.first];
+        let [second, third] = self.solution.orders.second_and_third();
+        let sine = (1.0 - mu * mu).max(0.0).sqrt();
+        for p in 0..pairs.len() {
+            let nu = (pairs.mu_s[p] * mu + pairs.across[p] * sine).clamp(-1.0, 1.0);
+            let (c1, c2) = peak.at(nu);
+            let value = phase.value(nu);
+            let near = nearness(nu);
+            for w in 0..WIDTH {
+                let (i, d) = (once[p][w], deeper[p][w]);
+                // The mean of τ_eye² + τ_sun² over a straight way is two thirds of (τ_eye + τ_sun)².
+                let squares = if i > 0.0 { d * d / i * (2.0 / 3.0) } else { 0.0 };
+                let more = 0.5 * second * c1[w] * d + 0.25 * third * c2[w] * squares;
+                multiple[p][w] += (1.0 - near) * more;
+                once[p][w] = i + if value[w] > 0.0 { near * more / value[w] } else { 0.0 };
+            }
+        }
+    }
+}
+
+/// 1 near the forward direction, 0 from about a right angle on.
+#[inline(always)]
+fn nearness(nu: f32) -> f32 {
+    let t = (nu / 0.6).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+fn group(solution: &Solution, batch: &Batch, members: &[usize]) -> Group {
+    let geometry = &solution.geometry;
+    let optics = &batch.optics;
+    let scattering = optics.group_scattering(members);
+    let deeper = optics.peaks[members[0]]
+        .is_some()
+        .then(|| batch.sunlight.times_depth(&solution.columns, &scattering));
+    let single =
+        SingleGroup { shares: optics.group_shares(&geometry.shells, &geometry.levels, members), deeper };
+    let shares: Vec<Vec<Lanes>> = (0..optics.scattering.len())
+        .map(|c| optics.shares(&geometry.shells, &geometry.levels.coarse, c))
+        .collect();
+    let refinement = Refinement::new(geometry.axis.len(), REFINEMENT, true);
+    let all = batch.state.field(&solution.basis, optics, &shares, members, &refinement);
+    let (basis, field) = needed_terms(&solution.basis, optics, members, all);
+    Group { single, basis, field, first: members[0], scattering }
+}
+
+/// Keeps the degrees that the group's phase functions have: an isotropic group needs but one term.
+fn needed_terms(basis: &Basis, optics: &Optics, members: &[usize], all: Field) -> (Basis, Field) {
+    let needed =
+        |l: usize| l == 0 || members.iter().any(|&c| optics.legendre[c][l].0.iter().any(|v| v.abs() > 1e-6));
+    let mut degrees: Vec<usize> = basis.terms.iter().map(|t| t.0).filter(|&l| needed(l)).collect();
+    degrees.sort_unstable();
+    degrees.dedup();
+    let smaller = Basis::new(&degrees);
+    if smaller.len() == basis.len() {
+        return (smaller, all);
+    }
+    let from: Vec<usize> =
+        smaller.terms.iter().map(|&(l, m)| basis.index(l, m).expect("a term of the larger basis")).collect();
+    let values = all.values.chunks_exact(all.terms).flat_map(|node| from.iter().map(|&t| node[t])).collect();
+    (smaller.clone(), Field { terms: smaller.len(), values })
+}

@@ -1,0 +1,118 @@
+//! The radii at which the radiance field is held, and the finer ones at which rays are sampled.
+
+use crate::medium::Medium;
+
+/// Radii from ground to top, m: a fine list, of which every `stride`-th belongs to the coarse one.
+#[derive(Clone, Debug)]
+pub struct Levels {
+    /// All sampling radii, rising from the ground to the top.
+    pub fine: Vec<f64>,
+    /// Radii that hold the state of the solver.
+    pub coarse: Vec<f64>,
+    /// For each fine radius, the coarse interval it lies in and its place there, 0 … 1.
+    pub place: Vec<(usize, f64)>,
+    /// For each coarse radius, its number in the fine list.
+    pub fine_index: Vec<usize>,
+}
+
+/// Heights at which the spacing function is tabulated.
+const STEPS: usize = 4096;
+/// A fine shell has at most this optical depth, so that what varies inside it is nearly linear.
+const SHELL_DEPTH: f64 = 0.25;
+
+impl Levels {
+    /// `coarse` levels, each interval cut into `cuts` shells; further shells end at every kink of a profile.
+    /// Levels follow a blend of height, of each scatterer's column and of the largest optical depth, so that
+    /// a thin layer of haze and a thick lower atmosphere are both resolved.
+    pub fn new(medium: &Medium, coarse: usize, cuts: usize) -> Self {
+        let cumulative = spacing(medium);
+        let intervals = (coarse.max(2) - 1) * cuts.max(1);
+        let mut fine: Vec<f64> = (0..=intervals)
+            .map(|k| {
+                medium.ground_radius + altitude_at(&cumulative, medium.height(), k as f64 / intervals as f64)
+            })
+            .collect();
+        fine[0] = medium.ground_radius;
+        fine[intervals] = medium.top_radius;
+        let coarse: Vec<f64> = fine.iter().copied().step_by(cuts.max(1)).collect();
+        insert_kinks(&mut fine, medium);
+        let fine_index = coarse.iter().map(|c| fine.partition_point(|f| f < c)).collect();
+        let place = fine.iter().map(|&r| locate(&coarse, r)).collect();
+        Levels { fine, coarse, place, fine_index }
+    }
+}
+
+/// The interval of a rising list that holds `r`, and the place of `r` in it.
+pub fn locate(radii: &[f64], r: f64) -> (usize, f64) {
+    let after = radii.partition_point(|&x| x <= r).clamp(1, radii.len() - 1);
+    let (a, b) = (radii[after - 1], radii[after]);
+    (after - 1, ((r - a) / (b - a)).clamp(0.0, 1.0))
+}
+
+/// A rising function of height on an even grid, whose equal parts are the intervals between levels.
+fn spacing(medium: &Medium) -> Vec<f64> {
+    let dz = medium.height() / STEPS as f64;
+    let middle = |k: usize| (k as f64 + 0.5) * dz;
+    let mut weight = vec![0.3 / STEPS as f64; STEPS];
+    let scatterers: Vec<_> = medium.constituents.iter().filter(|c| c.scatters()).collect();
+    for c in &scatterers {
+        let density: Vec<f64> = (0..STEPS).map(|k| c.density.at(middle(k))).collect();
+        let total: f64 = density.iter().sum();
+        if total > 0.0 {
+            for (w, d) in weight.iter_mut().zip(&density) {
+                *w += 0.5 / scatterers.len() as f64 * d / total;
+            }
+        }
+    }
+    let depth: Vec<f64> = (0..STEPS).map(|k| largest_extinction(medium, middle(k)) * dz).collect();
+    let total_depth: f64 = depth.iter().sum();
+    // In thick air the levels follow optical depth: a share that grows with it, up to nine tenths.
+    let share = 0.2 + 0.7 * total_depth / (total_depth + 10.0);
+    let sum: f64 = weight.iter().sum();
+    let mut cumulative = vec![0.0; STEPS + 1];
+    for k in 0..STEPS {
+        let by_depth = if total_depth > 0.0 { share * depth[k] / total_depth } else { 0.0 };
+        cumulative[k + 1] = cumulative[k] + (1.0 - share) * weight[k] / sum + by_depth;
+    }
+    let end = cumulative[STEPS];
+    cumulative.iter().map(|c| c / end).collect()
+}
+
+fn largest_extinction(medium: &Medium, altitude: f64) -> f64 {
+    (0..medium.wavelengths_nm.len())
+        .map(|w| medium.constituents.iter().map(|c| c.extinction(w) * c.density.at(altitude)).sum())
+        .fold(0.0, f64::max)
+}
+
+fn altitude_at(cumulative: &[f64], height: f64, share: f64) -> f64 {
+    let after = cumulative.partition_point(|&c| c < share).clamp(1, STEPS);
+    let (a, b) = (cumulative[after - 1], cumulative[after]);
+    let t = if b > a { (share - a) / (b - a) } else { 0.0 };
+    (after as f64 - 1.0 + t) * height / STEPS as f64
+}
+
+/// Adds a fine radius at every kink that is not there yet (closer than a ten-thousandth of the height).
+fn insert_kinks(fine: &mut Vec<f64>, medium: &Medium) {
+    let near = 1e-4 * medium.height();
+    for kink in medium.constituents.iter().flat_map(|c| c.density.kinks()) {
+        let r = medium.ground_radius + kink;
+        if r > medium.ground_radius && r < medium.top_radius && fine.iter().all(|f| (f - r).abs() > near) {
+            fine.push(r);
+        }
+    }
+    fine.sort_by(f64::total_cmp);
+    cut_thick_shells(fine, medium);
+}
+
+fn cut_thick_shells(fine: &mut Vec<f64>, medium: &Medium) {
+    let mut out = vec![fine[0]];
+    for pair in fine.windows(2) {
+        let middle = 0.5 * (pair[0] + pair[1]) - medium.ground_radius;
+        let depth = largest_extinction(medium, middle) * (pair[1] - pair[0]);
+        let parts = (depth / SHELL_DEPTH).ceil().clamp(1.0, 64.0) as usize;
+        out.extend((1..=parts).map(|k| pair[0] + (pair[1] - pair[0]) * k as f64 / parts as f64));
+        // The last one is the shell's own end, to the bit.
+        *out.last_mut().expect("not empty") = pair[1];
+    }
+    *fine = out;
+}

@@ -1,0 +1,26 @@
+//! Radiative transfer in a spherical shell: from a [`crate::medium::Medium`] to radiance at any view.
+//!
+//! The light scattered more than once is found from a few angular moments of the radiance at each altitude
+//! and sun angle, which are all that smooth phase functions can see (solver in [`solve`]); light scattered
+//! once is integrated apart with its exact phase function, because its shadow edges and peaks are sharp.
+//! Knows no preset, file or colour. All radiances are per unit solar irradiance normal to the beam, 1/sr.
+
+mod azimuth;
+
+mod column;
+
+pub mod exact;
+pub mod fill;
+mod forward;
+mod kernels;
+mod levels;
+mod moments;
+mod operator;
+mod optics;
+mod precondition;
+mod quadrature;
+mod rays;
+pub mod solve;
+mod state;
+mod sunlight;
+pub mod view;

@@ -1,0 +1,324 @@
+//! One order of scattering as a linear operator on the state, and the first order that starts it.
+
+use super::azimuth::{Pairs, SunAxis, midpoint_azimuths};
+use super::column::Shells;
+use super::kernels::{self, Field, Scratch, SingleGroup, SingleLight};
+use super::levels::Levels;
+use super::moments::Basis;
+use super::optics::Optics;
+use super::quadrature::{Direction, directions};
+use super::rays::{Path, Ray};
+use super::state::{Refinement, State};
+use super::sunlight::Sunlight;
+use crate::lanes::Lanes;
+use rayon::prelude::*;
+use std::f64::consts::{FRAC_1_PI, PI};
+
+/// Intervals of the refined sun axis for each of the state's.
+const REFINEMENT: usize = 3;
+
+/// The directions at one coarse level, with their paths.
+pub struct Gather {
+    pub directions: Vec<(Direction, Path)>,
+}
+
+/// What does not depend on wavelength: where the moments are gathered and along which paths.
+pub struct Geometry {
+    pub levels: Levels,
+    pub shells: Shells,
+    pub axis: SunAxis,
+    /// The axis that fields are looked up on while orders are summed, and the way there.
+    pub fine_axis: SunAxis,
+    pub refinement: Refinement,
+    pub gathers: Vec<Gather>,
+}
+
+impl Geometry {
+    pub fn new(levels: Levels, shells: Shells, axis: SunAxis, zeniths: usize, cubic: bool) -> Self {
+        let (ground, top) = (shells.edges[0], shells.edges[shells.len()]);
+        let gathers = levels
+            .coarse
+            .par_iter()
+            .map(|&r| Gather {
+                directions: directions(r, ground, top, zeniths)
+                    .into_iter()
+                    .map(|d| (d, Path::new(&shells, &levels, r, d.mu, d.hits_ground)))
+                    .collect(),
+            })
+            .collect();
+        let factor = if cubic { REFINEMENT } else { 1 };
+        let refinement = Refinement::new(axis.len(), factor, cubic);
+        Geometry { levels, shells, fine_axis: axis.refined(factor), refinement, axis, gathers }
+    }
+}
+
+/// A batch of wavelengths ready to scatter.
+pub struct Operator<'a> {
+    pub geometry: &'a Geometry,
+    pub optics: &'a Optics,
+    pub sunlight: &'a Sunlight,
+    pub basis: &'a Basis,
+    /// `[constituent][coarse level]`
+    pub shares: Vec<Vec<Lanes>>,
+    /// All constituents that scatter.
+    pub scatterers: Vec<usize>,
+    /// `[level][direction]`
+    pub rays: Vec<Vec<Ray>>,
+    pairs: Pairs,
+}
+
+impl<'a> Operator<'a> {
+    pub fn new(
+        geometry: &'a Geometry,
+        optics: &'a Optics,
+        sunlight: &'a Sunlight,
+        basis: &'a Basis,
+        azimuths: usize,
+    ) -> Self {
+        let levels = &geometry.levels;
+        let constituents = 0..optics.extinction.len();
+        let shares =
+            constituents.clone().map(|c| optics.shares(&geometry.shells, &levels.coarse, c)).collect();
+        let scatterers = constituents.filter(|&c| optics.scattering[c] != Lanes::ZERO).collect();
+        let rays = geometry
+            .gathers
+            .par_iter()
+            .map(|g| {
+                let build = |(_, path): &(Direction, Path)| {
+                    crate::isa::run(
+                        #[inline(always)]
+                        || Ray::new(path, levels, &optics.extinction, true),
+                    )
+                };
+                g.directions.iter().map(build).collect()
+            })
+            .collect();
+        let pairs = Pairs::new(&geometry.axis.mu_s, &midpoint_azimuths(azimuths));
+        Operator { geometry, optics, sunlight, basis, shares, scatterers, rays, pairs }
+    }
+
+    fn zero(&self) -> State {
+        State::zero(self.geometry.levels.coarse.len(), self.geometry.axis.len(), self.basis.len())
+    }
+
+    /// Gathers the moments of a radiance, given along each direction of each level for all pairs.
+    /// `radiance(level, direction number, scratch, out)` adds to `out`, one value a pair.
+    fn gather(
+        &self,
+        pairs: &Pairs,
+        radiance: impl Fn(usize, usize, &mut Scratch, &mut [Lanes]) + Sync,
+    ) -> State {
+        let mut state = self.zero();
+        let stride = state.suns * state.terms;
+        let mut ground = vec![Lanes::ZERO; state.suns];
+        let azimuth = AzimuthMoments::new(self.basis, pairs, &self.geometry.axis);
+        let on_ground: Vec<Vec<Lanes>> = state
+            .moments
+            .par_chunks_mut(stride)
+            .enumerate()
+            .map_init(
+                || (Scratch::default(), vec![Lanes::ZERO; pairs.len()]),
+                |(scratch, out), (level, moments)| {
+                    let mut flux = vec![Lanes::ZERO; if level == 0 { state.suns } else { 0 }];
+                    for (j, (d, _)) in self.geometry.gathers[level].directions.iter().enumerate() {
+                        out.fill(Lanes::ZERO);
+                        crate::isa::run(
+                            #[inline(always)]
+                            || {
+                                radiance(level, j, scratch, out);
+                                azimuth.add(d, out, moments, &mut flux);
+                            },
+                        );
+                    }
+                    azimuth.close_overhead(moments);
+                    flux
+                },
+            )
+            .collect();
+        ground.copy_from_slice(&on_ground[0]);
+        state.ground = ground;
+        state
+    }
+
+    /// The next order of scattering: moments of the light that the field of `state` and the ground lit by it
+    /// send out (Elek & Kmoch Eqs. 9–12 in one step).
+    pub fn apply(&self, state: &State) -> State {
+        let field =
+            state.field(self.basis, self.optics, &self.shares, &self.scatterers, &self.geometry.refinement);
+        let kernel = kernel_for(self.basis.modes);
+        let ground_radiance = self.optics.albedo * FRAC_1_PI as f32;
+        self.gather(
+            &self.pairs,
+            #[inline(always)]
+            |level, j, scratch, out| {
+                let (d, ray) = (&self.geometry.gathers[level].directions[j].0, &self.rays[level][j]);
+                kernel(
+                    ray,
+                    d.mu as f32,
+                    &field,
+                    &self.geometry.fine_axis,
+                    self.basis,
+                    &self.pairs,
+                    scratch,
+                    out,
+                );
+                if let Some(hit) = &ray.hit {
+                    let factor = hit.transmittance * ground_radiance;
+                    for (p, out) in out.iter_mut().enumerate() {
+                        let mu_s = self.pairs.mu_s[p] * hit.cos_turn + self.pairs.across[p] * hit.sin_turn;
+                        *out += interpolate(&state.ground, &self.geometry.axis, mu_s) * factor;
+                    }
+                }
+            },
+        )
+    }
+
+    /// The first order: sunlight scattered or reflected once, with the exact phase functions (Eqs. 7–8).
+    pub fn first_order(&self, azimuths: usize) -> State {
+        let geometry = self.geometry;
+        let pairs = Pairs::new(&geometry.axis.mu_s, &midpoint_azimuths(azimuths));
+        let groups: Vec<SingleGroup> = self
+            .scatterers
+            .iter()
+            .map(|&c| SingleGroup {
+                shares: self.optics.group_shares(&geometry.shells, &geometry.levels, &[c]),
+                deeper: None,
+            })
+            .collect();
+        self.gather(
+            &pairs,
+            #[inline(always)]
+            |level, j, scratch, out| {
+                let (d, path) = &geometry.gathers[level].directions[j];
+                let ray = Ray::new(path, &geometry.levels, &self.optics.extinction, false);
+                let mut once = vec![Lanes::ZERO; groups.len() * pairs.len()];
+                for (group, once) in groups.iter().zip(once.chunks_exact_mut(pairs.len())) {
+                    let mut light = SingleLight { once, deeper: &mut [] };
+                    kernels::single(&ray, self.sunlight, group, &[], &pairs, scratch, &mut light);
+                }
+                self.add_phases(d.mu as f32, &pairs, &once, out);
+                if let Some(hit) = &ray.hit {
+                    let factor = hit.transmittance * self.optics.albedo * FRAC_1_PI as f32;
+                    for (p, out) in out.iter_mut().enumerate() {
+                        let mu_s = pairs.mu_s[p] * hit.cos_turn + pairs.across[p] * hit.sin_turn;
+                        let cosine = if mu_s > 0.0 { mu_s } else { 0.0 };
+                        *out += self.sunlight.at(0, mu_s) * factor * cosine;
+                    }
+                }
+            },
+        )
+    }
+
+    /// Adds phase-free single scattering times the phase function, constituent by constituent.
+    #[inline(always)]
+    fn add_phases(&self, mu: f32, pairs: &Pairs, once: &[Lanes], out: &mut [Lanes]) {
+        let sine = (1.0 - mu * mu).max(0.0).sqrt();
+        for (once, &c) in once.chunks_exact(pairs.len()).zip(&self.scatterers) {
+            for (p, (out, once)) in out.iter_mut().zip(once).enumerate() {
+                let nu = pairs.mu_s[p] * mu + pairs.across[p] * sine;
+                let nu = nu.clamp(-1.0, 1.0);
+                *out += self.optics.phase[c].value(nu) * *once;
+            }
+        }
+    }
+}
+
+/// A row over the sun axis, interpolated linearly; 0 below its lowest node.
+#[inline(always)]
+pub fn interpolate(row: &[Lanes], axis: &SunAxis, mu_s: f32) -> Lanes {
+    let (n, t) = axis.locate(mu_s);
+    if t < 0.0 {
+        return Lanes::ZERO;
+    }
+    row[n as usize] * (1.0 - t) + row[n as usize + 1] * t
+}
+
+/// The kernel compiled for a number of azimuth modes.
+#[inline(always)]
+pub fn kernel_for(
+    modes: usize,
+) -> impl Fn(&Ray, f32, &Field, &SunAxis, &Basis, &Pairs, &mut Scratch, &mut [Lanes]) {
+    #[inline(always)]
+    move |ray, mu, field, axis, basis, pairs, scratch, out| match modes {
+        1 => kernels::multiple::<1>(ray, mu, field, axis, basis, pairs, scratch, out),
+        2 => kernels::multiple::<2>(ray, mu, field, axis, basis, pairs, scratch, out),
+        3 => kernels::multiple::<3>(ray, mu, field, axis, basis, pairs, scratch, out),
+        4 | 5 => kernels::multiple::<5>(ray, mu, field, axis, basis, pairs, scratch, out),
+        6 | 7 => kernels::multiple::<7>(ray, mu, field, axis, basis, pairs, scratch, out),
+        _ => kernels::multiple::<11>(ray, mu, field, axis, basis, pairs, scratch, out),
+    }
+}
+
+/// Projects radiance at azimuth midpoints onto cos mφ and onto the moments.
+struct AzimuthMoments<'a> {
+    basis: &'a Basis,
+    azimuths: usize,
+    /// `[mode][azimuth]`: 2π/n cos mφ
+    cosines: Vec<f32>,
+    /// `[sun node][mode]`: 1 / s^min(m,2), 0 where the sun stands overhead and m > 0.
+    inverse_sines: Vec<f32>,
+    suns: usize,
+}
+
+impl<'a> AzimuthMoments<'a> {
+    fn new(basis: &'a Basis, pairs: &Pairs, axis: &SunAxis) -> Self {
+        let n = pairs.azimuth_count;
+        let mut cosines = Vec::new();
+        for m in 0..basis.modes {
+            for k in 0..n {
+                let phi = (k as f64 + 0.5) * PI / n as f64;
+                cosines.push((2.0 * PI / n as f64 * libm::cos(m as f64 * phi)) as f32);
+            }
+        }
+        let mut inverse_sines = Vec::new();
+        for &mu_s in &axis.mu_s {
+            let s2 = (1.0 - mu_s * mu_s).max(0.0);
+            for m in 0..basis.modes {
+                let power = [1.0, s2.sqrt(), s2][m.min(2)];
+                inverse_sines.push(if power > 0.0 { (1.0 / power) as f32 } else { 0.0 });
+            }
+        }
+        AzimuthMoments { basis, azimuths: n, cosines, inverse_sines, suns: pairs.sun_count }
+    }
+
+    /// Adds one direction's radiance, `[sun node][azimuth]`, to the moments, and to the flux where wanted.
+    #[inline(always)]
+    fn add(&self, d: &Direction, radiance: &[Lanes], moments: &mut [Lanes], flux: &mut [Lanes]) {
+        let (modes, terms) = (self.basis.modes, self.basis.len());
+        let p = self.basis.polynomials(d.mu);
+        let sine = (1.0 - d.mu * d.mu).max(0.0).sqrt();
+        let mut sine_power = vec![1.0; modes];
+        for m in 1..modes {
+            sine_power[m] = sine_power[m - 1] * sine;
+        }
+        let factors: Vec<f32> =
+            (0..terms).map(|t| (d.weight * p[t] * sine_power[self.basis.orders[t]]) as f32).collect();
+        let mut projected = vec![Lanes::ZERO; modes];
+        for sun in 0..self.suns {
+            let row = &radiance[sun * self.azimuths..][..self.azimuths];
+            for m in 0..modes {
+                let mut sum = Lanes::ZERO;
+                for (value, c) in row.iter().zip(&self.cosines[m * self.azimuths..]) {
+                    sum += *value * *c;
+                }
+                projected[m] = sum * self.inverse_sines[sun * modes + m];
+            }
+            let out = &mut moments[sun * terms..][..terms];
+            for t in 0..terms {
+                out[t] += projected[self.basis.orders[t]] * factors[t];
+            }
+            if d.mu > 0.0 && !flux.is_empty() {
+                flux[sun] += projected[0] * (d.weight * d.mu) as f32;
+            }
+        }
+    }
+
+    /// With the sun overhead the scaled moments of m > 0 are 0/0: they take the value of the node beside.
+    fn close_overhead(&self, moments: &mut [Lanes]) {
+        let terms = self.basis.len();
+        let last = (self.suns - 1) * terms;
+        for t in (0..terms).filter(|&t| self.basis.orders[t] > 0) {
+            moments[last + t] = moments[last - terms + t];
+        }
+    }
+}

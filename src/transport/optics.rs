@@ -1,0 +1,164 @@
+//! A medium's coefficients at the wavelengths of one batch, in single precision side by side.
+
+use super::column::Shells;
+use super::forward::ForwardPeak;
+use super::levels::Levels;
+use crate::lanes::{Lanes, WIDTH};
+use crate::medium::{Medium, PhaseFunction};
+use std::f64::consts::PI;
+
+/// Coefficients of up to sixteen wavelengths.
+#[derive(Clone, Debug)]
+pub struct Optics {
+    /// Wavelengths in use; the lanes past them are empty space over black ground.
+    pub count: usize,
+    /// Per constituent, where the density is 1, 1/m.
+    pub extinction: Vec<Lanes>,
+    pub scattering: Vec<Lanes>,
+    pub albedo: Lanes,
+    /// Phase function of each constituent.
+    pub phase: Vec<PhaseLanes>,
+    /// What the field misses of each constituent's forward peak.
+    pub peaks: Vec<Option<ForwardPeak>>,
+    /// `[constituent][degree]`: Legendre coefficients.
+    pub legendre: Vec<Vec<Lanes>>,
+}
+
+impl Optics {
+    /// Coefficients of a medium of at most sixteen wavelengths; Legendre coefficients up to `degree`.
+    pub fn new(medium: &Medium, degree: usize) -> Self {
+        let count = medium.wavelengths_nm.len();
+        assert!(count <= WIDTH, "a batch holds at most {WIDTH} wavelengths");
+        let per = |f: &dyn Fn(&crate::medium::Constituent, usize) -> f64| -> Vec<Lanes> {
+            let lanes = |c| Lanes::from_f64(&(0..count).map(|w| f(c, w)).collect::<Vec<_>>());
+            medium.constituents.iter().map(lanes).collect()
+        };
+        let legendre = medium
+            .constituents
+            .iter()
+            .map(|c| {
+                let chi: Vec<Vec<f64>> = c.phase.iter().map(|p| p.legendre(degree)).collect();
+                (0..=degree).map(|l| Lanes::from_f64(&chi.iter().map(|x| x[l]).collect::<Vec<_>>())).collect()
+            })
+            .collect();
+        Optics {
+            count,
+            extinction: per(&|c, w| c.extinction(w)),
+            scattering: per(&|c, w| c.scattering[w]),
+            albedo: Lanes::from_f64(&medium.ground_albedo),
+            phase: medium.constituents.iter().map(|c| PhaseLanes::new(&c.phase)).collect(),
+            peaks: medium.constituents.iter().map(|c| ForwardPeak::new(&c.phase, degree)).collect(),
+            legendre,
+        }
+    }
+
+    /// Scattering of a constituent as a share of all extinction at each radius (0 in a vacuum).
+    pub fn shares(&self, shells: &Shells, radii: &[f64], constituent: usize) -> Vec<Lanes> {
+        radii
+            .iter()
+            .map(|&r| {
+                let shell = shells.find(r);
+                let density: Vec<f32> =
+                    (0..shells.constituents).map(|c| shells.density(shell, c, r) as f32).collect();
+                let mut total = Lanes::ZERO;
+                for (d, e) in density.iter().zip(&self.extinction) {
+                    total += *e * *d;
+                }
+                let mut share = self.scattering[constituent] * density[constituent];
+                for w in 0..WIDTH {
+                    share[w] = if total[w] > 0.0 { share[w] / total[w] } else { 0.0 };
+                }
+                share
+            })
+            .collect()
+    }
+
+    /// Scattering coefficients of a group, at density 1 of each, 0 for the constituents outside it.
+    pub fn group_scattering(&self, group: &[usize]) -> Vec<Lanes> {
+        (0..self.scattering.len())
+            .map(|c| if group.contains(&c) { self.scattering[c] } else { Lanes::ZERO })
+            .collect()
+    }
+
+    /// Adds the shares of several constituents.
+    pub fn group_shares(&self, shells: &Shells, levels: &Levels, group: &[usize]) -> Vec<Lanes> {
+        let mut sum = vec![Lanes::ZERO; levels.fine.len()];
+        for &c in group {
+            for (s, share) in sum.iter_mut().zip(self.shares(shells, &levels.fine, c)) {
+                *s += share;
+            }
+        }
+        sum
+    }
+}
+
+/// A phase function at several wavelengths at once.
+#[derive(Clone, Debug)]
+pub enum PhaseLanes {
+    /// a + b ν²: isotropic and Rayleigh.
+    Quadratic { a: Lanes, b: Lanes },
+    /// norm (1 + bend ν²) / (1 + g² − 2gν)^{3/2}: Henyey–Greenstein (bend 0) and Cornette–Shanks (bend 1).
+    Peaked { norm: Lanes, bend: Lanes, square: Lanes, twice: Lanes },
+    /// Anything else, evaluated one by one.
+    Other(Vec<PhaseFunction>),
+}
+
+impl PhaseLanes {
+    pub fn new(phase: &[PhaseFunction]) -> Self {
+        let gather = |f: &dyn Fn(&PhaseFunction) -> Option<[f64; 4]>| -> Option<[Lanes; 4]> {
+            let rows: Option<Vec<[f64; 4]>> = phase.iter().map(f).collect();
+            let rows = rows?;
+            Some([0, 1, 2, 3].map(|k| Lanes::from_f64(&rows.iter().map(|r| r[k]).collect::<Vec<_>>())))
+        };
+        if let Some([a, b, ..]) = gather(&quadratic) {
+            return PhaseLanes::Quadratic { a, b };
+        }
+        if let Some([norm, bend, square, twice]) = gather(&peaked) {
+            // Lanes past the last wavelength must not divide by zero.
+            let square = square.map(|v| if v == 0.0 { 1.0 } else { v });
+            return PhaseLanes::Peaked { norm, bend, square, twice };
+        }
+        PhaseLanes::Other(phase.to_vec())
+    }
+
+    /// Values at the cosine of a scattering angle, 1/sr.
+    #[inline(always)]
+    pub fn value(&self, nu: f32) -> Lanes {
+        match self {
+            PhaseLanes::Quadratic { a, b } => *a + *b * (nu * nu),
+            PhaseLanes::Peaked { norm, bend, square, twice } => {
+                let mut out = Lanes::ZERO;
+                for w in 0..WIDTH {
+                    let d = square[w] - twice[w] * nu;
+                    out[w] = norm[w] * (1.0 + bend[w] * nu * nu) / (d * d.sqrt());
+                }
+                out
+            }
+            PhaseLanes::Other(phase) => {
+                let mut out = Lanes::ZERO;
+                for (o, p) in out.0.iter_mut().zip(phase) {
+                    *o = p.value(f64::from(nu)) as f32;
+                }
+                out
+            }
+        }
+    }
+}
+
+fn quadratic(p: &PhaseFunction) -> Option<[f64; 4]> {
+    match p {
+        PhaseFunction::Isotropic | PhaseFunction::Rayleigh { .. } => {
+            Some([p.value(0.0), p.value(1.0) - p.value(0.0), 0.0, 0.0])
+        }
+        _ => None,
+    }
+}
+
+fn peaked(p: &PhaseFunction) -> Option<[f64; 4]> {
+    let (g, bend, norm) = match p {
+        PhaseFunction::HenyeyGreenstein { g } => (*g, 0.0, 1.0),
+        PhaseFunction::CornetteShanks { g } => (*g, 1.0, 1.5 / (2.0 + g * g)),
+        _ => return None,
+    };
+    Some([norm * (1.0 - g * g) / (4.0 * PI), bend, 1.0 + g * g, 2.0 * g])
+}

@@ -1,0 +1,234 @@
+//! The solver: from a medium to the multiply scattered light field, order by order or converged.
+
+use super::azimuth::SunAxis;
+use super::column::Shells;
+use super::levels::Levels;
+use super::moments::{Basis, MOST_DEGREE};
+use super::operator::{Geometry, Operator};
+use super::optics::Optics;
+use super::precondition::Preconditioner;
+use super::state::State;
+use super::sunlight::{SunColumns, Sunlight};
+use crate::lanes::{Lanes, WIDTH};
+use crate::medium::Medium;
+
+/// Which orders of scattering are summed. A reflection by the ground counts as one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Orders {
+    /// All, until no moment changes by more than this fraction.
+    Converged { tolerance: f64 },
+    /// The first N, as in Elek & Kmoch's Algorithm 1.
+    First(usize),
+}
+
+/// Numbers of nodes of the solver.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resolution {
+    /// Levels that hold the state, and shells between two of them.
+    pub levels: usize,
+    pub cuts: usize,
+    /// Zenith directions above the horizontal; somewhat more than as many again lie below it.
+    pub zeniths: usize,
+    /// Azimuths over half a turn, for the first order and for the rest.
+    pub first_azimuths: usize,
+    pub azimuths: usize,
+    pub sun_nodes: usize,
+    /// Nodes per level of the table of transmittance to the sun.
+    pub sunlight_nodes: usize,
+    /// Largest degree of the angular moments; lower where the phase functions need less.
+    pub degree: usize,
+}
+
+impl Resolution {
+    /// For tables: errors well below those of their interpolation.
+    pub const TABLES: Resolution = Resolution {
+        levels: 32,
+        cuts: 3,
+        zeniths: 16,
+        first_azimuths: 8,
+        azimuths: 6,
+        sun_nodes: 48,
+        sunlight_nodes: 192,
+        degree: 6,
+    };
+    /// For answers that tables are measured against.
+    pub const EXACT: Resolution = Resolution {
+        levels: 44,
+        cuts: 3,
+        zeniths: 20,
+        first_azimuths: 16,
+        azimuths: 8,
+        sun_nodes: 64,
+        sunlight_nodes: 512,
+        degree: 6,
+    };
+}
+
+impl Orders {
+    /// Factors of the second and third order: 1 where they are asked for.
+    pub fn second_and_third(&self) -> [f32; 2] {
+        match self {
+            Orders::Converged { .. } => [1.0, 1.0],
+            Orders::First(n) => [2, 3].map(|k| if *n >= k { 1.0 } else { 0.0 }),
+        }
+    }
+}
+
+/// The light field of up to sixteen wavelengths.
+pub struct Batch {
+    /// Number of the first of its wavelengths.
+    pub first: usize,
+    pub optics: Optics,
+    pub sunlight: Sunlight,
+    /// Sum of the orders that scatter on: all that is needed for one more.
+    pub state: State,
+}
+
+/// How the sum of orders ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// Times that the operator was applied, or the number of orders asked for.
+    pub applications: usize,
+    /// Per wavelength, the largest relative change that one more order would make to the mean radiance.
+    pub residual: Vec<f64>,
+}
+
+/// A solved medium.
+pub struct Solution {
+    pub geometry: Geometry,
+    /// Columns towards the sun, from which more tables of sunlight can be made.
+    pub columns: SunColumns,
+    pub basis: Basis,
+    pub batches: Vec<Batch>,
+    pub orders: Orders,
+    pub report: Report,
+}
+
+/// Applications after which a solution that has not converged is left as it is; the residual tells.
+const MOST_APPLICATIONS: usize = 400;
+
+/// The sun axis reaches below the paper's −0.2857 where the shell is so thick that its top is lit still.
+pub fn lowest_sun(medium: &Medium) -> f64 {
+    const MARGIN: f64 = 0.01;
+    let ratio = medium.ground_radius / medium.top_radius;
+    (-0.2857_f64).min(-(1.0 - ratio * ratio).sqrt() - MARGIN).max(-1.0)
+}
+
+impl Solution {
+    /// Solves a medium at all its wavelengths.
+    pub fn new(medium: &Medium, resolution: &Resolution, orders: Orders) -> Self {
+        let levels = Levels::new(medium, resolution.levels, resolution.cuts);
+        let shells = Shells::new(medium, &levels);
+        let columns = SunColumns::new(&shells, &levels, resolution.sunlight_nodes);
+        let axis = SunAxis::new(resolution.sun_nodes, lowest_sun(medium));
+        let geometry = Geometry::new(levels, shells, axis, resolution.zeniths, is_thin(medium));
+        let basis = Basis::new(&needed_degrees(medium, resolution.degree));
+        let count = medium.wavelengths_nm.len();
+        let mut batches = Vec::new();
+        let mut report = Report { applications: 0, residual: Vec::new() };
+        for first in (0..count).step_by(WIDTH) {
+            let which: Vec<usize> = (first..count.min(first + WIDTH)).collect();
+            let optics = Optics::new(&medium.at_wavelengths(&which), resolution.degree);
+            let sunlight = Sunlight::new(&columns, &geometry.levels, &optics.extinction);
+            let operator = Operator::new(&geometry, &optics, &sunlight, &basis, resolution.azimuths);
+            let (state, one) = sum_orders(&operator, resolution.first_azimuths, orders);
+            report.applications = report.applications.max(one.applications);
+            report.residual.extend(one.residual);
+            batches.push(Batch { first, optics, sunlight, state });
+        }
+        Solution { geometry, columns, basis, batches, orders, report }
+    }
+}
+
+/// Cubic interpolation within the iteration amplifies fine horizontal waves in thick air, which the iteration
+/// does not damp there; above this optical depth it is linear.
+fn is_thin(medium: &Medium) -> bool {
+    const THICK: f64 = 8.0;
+    medium.vertical_optical_depth().into_iter().all(|d| d < THICK)
+}
+
+/// Degrees at which any scatterer's phase function has something, up to `largest`; always degree 0.
+fn needed_degrees(medium: &Medium, largest: usize) -> Vec<usize> {
+    let largest = largest.min(MOST_DEGREE);
+    let mut needed = vec![false; largest + 1];
+    needed[0] = true;
+    for c in medium.constituents.iter().filter(|c| c.scatters()) {
+        for phase in &c.phase {
+            for (n, chi) in needed.iter_mut().zip(phase.legendre(largest)) {
+                *n |= chi.abs() > 1e-6;
+            }
+        }
+    }
+    (0..=largest).filter(|&l| needed[l]).collect()
+}
+
+fn sum_orders(operator: &Operator, first_azimuths: usize, orders: Orders) -> (State, Report) {
+    match orders {
+        Orders::Converged { tolerance } => {
+            converge(operator, operator.first_order(first_azimuths), tolerance)
+        }
+        Orders::First(n) => first_orders(operator, first_azimuths, n),
+    }
+}
+
+/// The orders 1 … n − 1, whose light the last order scatters.
+fn first_orders(operator: &Operator, first_azimuths: usize, n: usize) -> (State, Report) {
+    let mut term = operator.first_order(first_azimuths);
+    let mut sum = term.clone();
+    sum.scale(0.0);
+    for _ in 1..n {
+        sum.add(&term);
+        term = operator.apply(&term);
+    }
+    sum.add(&term);
+    let residual = largest_change(&term, &sum, operator.optics.count);
+    term.scale(-1.0);
+    sum.add(&term);
+    (sum, Report { applications: n, residual })
+}
+
+/// Solves (I − A) x = b by x ← x + P⁻¹ (b + A x − x).
+pub fn converge(operator: &Operator, first: State, tolerance: f64) -> (State, Report) {
+    let preconditioner = Preconditioner::new(operator);
+    let mut x = first.clone();
+    preconditioner.solve(&mut x);
+    let mut applications = 0;
+    loop {
+        let mut change = operator.apply(&x);
+        applications += 1;
+        change.add(&first);
+        x.scale(-1.0);
+        change.add(&x);
+        x.scale(-1.0);
+        let residual = largest_change(&change, &x, operator.optics.count);
+        let largest = residual.iter().copied().fold(0.0, f64::max);
+        preconditioner.solve(&mut change);
+        x.add(&change);
+        if largest < tolerance || applications >= MOST_APPLICATIONS || !largest.is_finite() {
+            return (x, Report { applications, residual });
+        }
+    }
+}
+
+/// Per wavelength, the largest change of the mean radiance anywhere, relative to its value there (and to a
+/// millionth of the largest value, below which it is dark).
+fn largest_change(change: &State, state: &State, count: usize) -> Vec<f64> {
+    let mut brightest = Lanes::ZERO;
+    let means = state.moments.iter().step_by(state.terms);
+    for m in means.clone() {
+        for w in 0..WIDTH {
+            brightest[w] = if m[w] > brightest[w] { m[w] } else { brightest[w] };
+        }
+    }
+    let mut out = vec![0.0f64; count];
+    for (c, m) in change.moments.iter().step_by(state.terms).zip(means) {
+        for (w, out) in out.iter_mut().enumerate() {
+            let scale = m[w].abs() + 1e-6 * brightest[w];
+            if scale > 0.0 {
+                let ratio = f64::from(c[w].abs() / scale);
+                *out = if ratio > *out || ratio.is_nan() { ratio } else { *out };
+            }
+        }
+    }
+    out
+}
