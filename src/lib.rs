@@ -22,6 +22,8 @@ pub mod error;
 pub mod isa;
 pub mod lanes;
 pub mod medium;
+pub mod methods;
 pub mod points;
+pub mod table;
 
 pub use error::{Error, Result};

@@ -1,0 +1,1 @@
+//! The older methods of the field, for the chart of accuracy against cost.
