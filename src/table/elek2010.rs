@@ -26,6 +26,8 @@ pub struct Elek2010 {
     /// Height of the shell, m.
     height: f64,
     mu_s_min: f64,
+    /// 1 − e^(−2.8 (1 − mu_s_min)): what the sun axis is divided by.
+    sun_range: f64,
     size: [usize; 4],
 }
 
@@ -48,14 +50,15 @@ impl Elek2010 {
     /// halves, even. None where a size or the shell is out of that range.
     pub fn new(ground_radius: f64, top_radius: f64, size: [usize; 4]) -> Option<Self> {
         let valid_shell = ground_radius > 0.0 && top_radius > ground_radius && top_radius.is_finite();
-        let valid_size = size.iter().all(|&n| n >= 2) && size[1] % 2 == 0;
+        let valid_size = size.iter().all(|&n| n >= 2) && size[1].is_multiple_of(2);
         if !valid_shell || !valid_size {
             return None;
         }
         let height = top_radius - ground_radius;
         let last_light = -(height * (top_radius + ground_radius)).sqrt() / top_radius;
         let mu_s_min = PAPER_MU_S_MIN.min(last_light - MU_S_MARGIN).max(-1.0);
-        Some(Elek2010 { ground_radius, height, mu_s_min, size })
+        let sun_range = -libm::expm1(-SUN_STEEPNESS * (1.0 - mu_s_min));
+        Some(Elek2010 { ground_radius, height, mu_s_min, sun_range, size })
     }
 
     pub fn size(&self) -> [usize; 4] {
@@ -188,8 +191,8 @@ impl Elek2010 {
     /// its (1 − e^(−2.8 mu_s − 0.8)) / (1 − e^−3.6).
     #[inline]
     pub fn sun_coordinate(&self, mu_s: f64) -> Option<f64> {
-        let from_dark = |mu_s: f64| -libm::expm1(-SUN_STEEPNESS * (mu_s - self.mu_s_min));
-        (mu_s >= self.mu_s_min).then(|| from_dark(mu_s) / from_dark(1.0))
+        let from_dark = || -libm::expm1(-SUN_STEEPNESS * (mu_s - self.mu_s_min));
+        (mu_s >= self.mu_s_min).then(|| from_dark() / self.sun_range)
     }
 
     /// Cosine of the sun's zenith angle of texel `k`: mu_s_min for the first, 1 for the last.
@@ -198,8 +201,7 @@ impl Elek2010 {
             return 1.0;
         }
         let w = k as f64 / (self.size[2] - 1) as f64;
-        let range = -libm::expm1(-SUN_STEEPNESS * (1.0 - self.mu_s_min));
-        self.mu_s_min - libm::log1p(-w * range) / SUN_STEEPNESS
+        self.mu_s_min - libm::log1p(-w * self.sun_range) / SUN_STEEPNESS
     }
 
     // ---- azimuth: R = (1 + cos φ) / 2 --------------------------------------------------------------------
@@ -230,13 +232,16 @@ impl Elek2010 {
         hits_ground: bool,
     ) -> Option<[Texel; 4]> {
         debug_assert!(altitude <= self.height * (1.0 + 1e-6), "{altitude} m is no altitude in this shell");
-        let sun = self.sun_coordinate(mu_s)?;
-        Some([
-            texel(self.altitude_coordinate(altitude), self.size[0]),
-            self.view_texel(altitude, mu, hits_ground),
-            texel(sun, self.size[2]),
-            texel(self.azimuth_coordinate(cos_azimuth), self.size[3]),
-        ])
+        let [sun, azimuth] = self.sun_texels(mu_s, cos_azimuth)?;
+        let altitude_texel = texel(self.altitude_coordinate(altitude), self.size[0]);
+        Some([altitude_texel, self.view_texel(altitude, mu, hits_ground), sun, azimuth])
+    }
+
+    /// Texels around a sun zenith angle and azimuth; none where the sun is below the axis.
+    #[inline]
+    pub fn sun_texels(&self, mu_s: f64, cos_azimuth: f64) -> Option<[Texel; 2]> {
+        let sun = texel(self.sun_coordinate(mu_s)?, self.size[2]);
+        Some([sun, texel(self.azimuth_coordinate(cos_azimuth), self.size[3])])
     }
 
     /// Texels around a view direction, both in the half that `hits_ground` names.
