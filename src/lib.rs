@@ -22,7 +22,9 @@ pub mod error;
 pub mod isa;
 pub mod lanes;
 pub mod medium;
+pub mod methods;
 pub mod points;
 pub mod transport;
+pub mod table;
 
 pub use error::{Error, Result};

@@ -1,0 +1,297 @@
+//! The 4D parameterisation of Elek & Kmoch 2010 §4.1 (after Bruneton & Neyret 2008), repaired.
+//!
+//! Repairs. The formulas take a radius where the text says altitude. V is split into two halves of texels,
+//! rays that hit the ground and rays that leave through the top, each with its ends on texel centres; in the
+//! paper nadir and zenith meet at V = ½ and blend. The sun axis reaches down to the last light at the top of
+//! a thick shell, and what lies beyond is dark, not clamped. All sizes have texel centres at both ends.
+//!
+//! Altitudes, not radii, come in and go out: at 1 mm over the ground of a large planet a radius in f64 has
+//! few digits of altitude left. Every difference below is written as a product or quotient, so that
+//! horizon and distances keep their digits.
+
+use super::array::{Texel, texel};
+
+/// Steepness of the sun axis, the paper's 2.8.
+const SUN_STEEPNESS: f64 = 2.8;
+/// Lower end of the paper's sun axis: W = 0 where 2.8 cos δ + 0.8 = 0.
+const PAPER_MU_S_MIN: f64 = -0.8 / 2.8;
+/// How far the axis reaches below the last light at the top: half a degree at the horizon, so that the dark
+/// edge lies inside the table for any shell.
+const MU_S_MARGIN: f64 = 0.01;
+
+/// The mapping between (altitude, mu, mu_s, azimuth) and texels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Elek2010 {
+    ground_radius: f64,
+    /// Height of the shell, m.
+    height: f64,
+    mu_s_min: f64,
+    /// 1 − e^(−2.8 (1 − mu_s_min)): what the sun axis is divided by.
+    sun_range: f64,
+    size: [usize; 4],
+}
+
+/// One axis in words, for a manifest: the coordinate 0..1 from the physical quantity, the inverse, and the
+/// constants that both use.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AxisFormula {
+    pub name: &'static str,
+    pub size: usize,
+    pub coordinate: &'static str,
+    pub inverse: &'static str,
+    pub constants: Vec<(&'static str, f64)>,
+}
+
+impl Elek2010 {
+    /// The paper's size: altitude, view, sun, azimuth.
+    pub const PAPER_SIZE: [usize; 4] = [32, 128, 32, 8];
+
+    /// A mapping for a shell between two radii (m). Sizes are at least 2, that of the view axis, which has two
+    /// halves, even. None where a size or the shell is out of that range.
+    pub fn new(ground_radius: f64, top_radius: f64, size: [usize; 4]) -> Option<Self> {
+        let valid_shell = ground_radius > 0.0 && top_radius > ground_radius && top_radius.is_finite();
+        let valid_size = size.iter().all(|&n| n >= 2) && size[1].is_multiple_of(2);
+        if !valid_shell || !valid_size {
+            return None;
+        }
+        let height = top_radius - ground_radius;
+        let last_light = -(height * (top_radius + ground_radius)).sqrt() / top_radius;
+        let mu_s_min = PAPER_MU_S_MIN.min(last_light - MU_S_MARGIN).max(-1.0);
+        let sun_range = -libm::expm1(-SUN_STEEPNESS * (1.0 - mu_s_min));
+        Some(Elek2010 { ground_radius, height, mu_s_min, sun_range, size })
+    }
+
+    pub fn size(&self) -> [usize; 4] {
+        self.size
+    }
+
+    /// Lowest cosine of the sun's zenith angle in the table; below it there is no light anywhere.
+    pub fn mu_s_min(&self) -> f64 {
+        self.mu_s_min
+    }
+
+    // ---- altitude: U = Z1 / Z2 -------------------------------------------------------------------------
+
+    /// Z1: distance from a point to its horizon, m.
+    #[inline]
+    pub fn horizon_distance(&self, altitude: f64) -> f64 {
+        (altitude * (2.0 * self.ground_radius + altitude)).sqrt()
+    }
+
+    /// U(altitude) in 0..1.
+    pub fn altitude_coordinate(&self, altitude: f64) -> f64 {
+        self.horizon_distance(altitude) / self.horizon_distance(self.height)
+    }
+
+    /// Altitude of texel `i`, m: 0 for the first, the shell's height for the last.
+    pub fn altitude(&self, i: usize) -> f64 {
+        if i + 1 == self.size[0] {
+            return self.height;
+        }
+        let z1 = self.horizon_distance(self.height) * i as f64 / (self.size[0] - 1) as f64;
+        let ground = self.ground_radius;
+        z1 * z1 / (ground + (ground * ground + z1 * z1).sqrt())
+    }
+
+    /// Radius of texel `i`, m.
+    pub fn radius(&self, i: usize) -> f64 {
+        self.ground_radius + self.altitude(i)
+    }
+
+    // ---- view: V, two halves, linear in the distance to where the ray ends -------------------------------
+
+    /// Cosine of the zenith angle of the horizon.
+    pub fn horizon_mu(&self, altitude: f64) -> f64 {
+        -self.horizon_distance(altitude) / (self.ground_radius + altitude)
+    }
+
+    /// True where a ray hits the ground: cos ϑ < 0 and Z3 > 0 in the paper.
+    #[inline]
+    pub fn hits_ground(&self, altitude: f64, mu: f64) -> bool {
+        mu < self.horizon_mu(altitude)
+    }
+
+    /// Distance along a ray to the ground or to the top, m. `hits_ground` decides which; at the horizon itself
+    /// rounding may not.
+    #[inline]
+    pub fn distance(&self, altitude: f64, mu: f64, hits_ground: bool) -> f64 {
+        let z1 = self.horizon_distance(altitude);
+        let along = (self.ground_radius + altitude) * mu;
+        if hits_ground {
+            let root = ((-along - z1) * (z1 - along)).max(0.0).sqrt();
+            return if z1 == 0.0 { 0.0 } else { z1 * z1 / (root - along) };
+        }
+        let to_top = self.z2_squared_minus_z1_squared(altitude);
+        let root = (along * along + to_top).sqrt();
+        match along > 0.0 {
+            true => to_top / (along + root),
+            false => root - along,
+        }
+    }
+
+    #[inline]
+    fn z2_squared_minus_z1_squared(&self, altitude: f64) -> f64 {
+        (self.height - altitude) * (2.0 * self.ground_radius + self.height + altitude)
+    }
+
+    /// Shortest (nadir, zenith) and longest (horizon) distance of a half.
+    #[inline]
+    fn distances(&self, altitude: f64, hits_ground: bool) -> (f64, f64) {
+        let z1 = self.horizon_distance(altitude);
+        match hits_ground {
+            true => (altitude, z1),
+            false => (self.height - altitude, z1 + self.horizon_distance(self.height)),
+        }
+    }
+
+    /// Coordinate 0..1 inside a half of the view axis: 0 nadir or zenith, 1 the horizon. On the ground, where
+    /// all distances to it are 0, the limit from above: 0, and 1 for the horizontal ray.
+    #[inline]
+    pub fn view_coordinate(&self, altitude: f64, mu: f64, hits_ground: bool) -> f64 {
+        let (shortest, longest) = self.distances(altitude, hits_ground);
+        if longest <= shortest {
+            return f64::from(u8::from(mu >= 0.0));
+        }
+        let distance = self.distance(altitude, mu, hits_ground);
+        ((distance - shortest) / (longest - shortest)).clamp(0.0, 1.0)
+    }
+
+    /// Cosine of the view zenith angle, and whether the ray hits the ground, of view texel `j` at an altitude.
+    /// Texels 0 … N/2−1 go from nadir to the horizon, N/2 … N−1 from zenith to the horizon. On the ground the
+    /// first half is the limit from above: nadir, then the horizon for all the rest.
+    pub fn mu(&self, altitude: f64, j: usize) -> (f64, bool) {
+        let half = self.size[1] / 2;
+        let (hits_ground, step) = (j < half, j % half);
+        let end = if hits_ground { -1.0 } else { 1.0 };
+        if step == 0 {
+            return (end, hits_ground);
+        }
+        let horizon = self.horizon_mu(altitude);
+        let (shortest, longest) = self.distances(altitude, hits_ground);
+        let x = step as f64 / (half - 1) as f64;
+        let distance = shortest + x * (longest - shortest);
+        if step + 1 == half || distance == 0.0 {
+            return (horizon, hits_ground);
+        }
+        let (z1, radius) = (self.horizon_distance(altitude), self.ground_radius + altitude);
+        let above_horizon = match hits_ground {
+            true => -(z1 - distance) * (z1 - distance) / (2.0 * radius * distance),
+            false => {
+                let z2 = self.horizon_distance(self.height);
+                let z2_minus_z1 = self.z2_squared_minus_z1_squared(altitude) / (z2 + z1);
+                (longest - distance) * (z2_minus_z1 + distance) / (2.0 * radius * distance)
+            }
+        };
+        ((horizon + above_horizon).clamp(-1.0, 1.0), hits_ground)
+    }
+
+    // ---- sun: W = (1 − e^(−2.8 (mu_s − mu_s_min))) / (1 − e^(−2.8 (1 − mu_s_min))) -----------------------
+
+    /// W(mu_s) in 0..1; none below the axis, where it is dark. With the paper's mu_s_min = −0.8/2.8 this is
+    /// its (1 − e^(−2.8 mu_s − 0.8)) / (1 − e^−3.6).
+    #[inline]
+    pub fn sun_coordinate(&self, mu_s: f64) -> Option<f64> {
+        let from_dark = || -libm::expm1(-SUN_STEEPNESS * (mu_s - self.mu_s_min));
+        (mu_s >= self.mu_s_min).then(|| from_dark() / self.sun_range)
+    }
+
+    /// Cosine of the sun's zenith angle of texel `k`: mu_s_min for the first, 1 for the last.
+    pub fn mu_s(&self, k: usize) -> f64 {
+        if k + 1 == self.size[2] {
+            return 1.0;
+        }
+        let w = k as f64 / (self.size[2] - 1) as f64;
+        self.mu_s_min - libm::log1p(-w * self.sun_range) / SUN_STEEPNESS
+    }
+
+    // ---- azimuth: R = (1 + cos φ) / 2 --------------------------------------------------------------------
+
+    /// R(cos φ) in 0..1; 1 looks towards the sun.
+    pub fn azimuth_coordinate(&self, cos_azimuth: f64) -> f64 {
+        0.5 * (1.0 + cos_azimuth)
+    }
+
+    /// Cosine of the view–sun azimuth of texel `l`: −1 for the first, 1 for the last.
+    pub fn cos_azimuth(&self, l: usize) -> f64 {
+        2.0 * l as f64 / (self.size[3] - 1) as f64 - 1.0
+    }
+
+    // ---- all four ----------------------------------------------------------------------------------------
+
+    /// Texels around (altitude in m, cosines), for [`super::Array::interpolate`] on an array of [`Self::size`];
+    /// none where the sun is below the axis: the answer there is 0. `hits_ground` says which half of the view
+    /// axis is read; [`Self::hits_ground`] decides it for a ray that starts here, a point further along a ray
+    /// keeps the ray's own.
+    #[inline]
+    pub fn locate(
+        &self,
+        altitude: f64,
+        mu: f64,
+        mu_s: f64,
+        cos_azimuth: f64,
+        hits_ground: bool,
+    ) -> Option<[Texel; 4]> {
+        debug_assert!(altitude <= self.height * (1.0 + 1e-6), "{altitude} m is no altitude in this shell");
+        let [sun, azimuth] = self.sun_texels(mu_s, cos_azimuth)?;
+        let altitude_texel = texel(self.altitude_coordinate(altitude), self.size[0]);
+        Some([altitude_texel, self.view_texel(altitude, mu, hits_ground), sun, azimuth])
+    }
+
+    /// Texels around a sun zenith angle and azimuth; none where the sun is below the axis.
+    #[inline]
+    pub fn sun_texels(&self, mu_s: f64, cos_azimuth: f64) -> Option<[Texel; 2]> {
+        let sun = texel(self.sun_coordinate(mu_s)?, self.size[2]);
+        Some([sun, texel(self.azimuth_coordinate(cos_azimuth), self.size[3])])
+    }
+
+    /// Texels around a view direction, both in the half that `hits_ground` names.
+    #[inline]
+    pub fn view_texel(&self, altitude: f64, mu: f64, hits_ground: bool) -> Texel {
+        let half = self.size[1] / 2;
+        let (index, fraction) = texel(self.view_coordinate(altitude, mu, hits_ground), half);
+        (if hits_ground { index } else { half + index }, fraction)
+    }
+
+    /// The axes for a manifest. Texel i of n has the coordinate i / (n − 1); for the view axis that holds
+    /// within each half of n / 2 texels.
+    pub fn axes(&self) -> [AxisFormula; 4] {
+        let z2 = self.horizon_distance(self.height);
+        let radii =
+            vec![("r_ground", self.ground_radius), ("r_top", self.ground_radius + self.height), ("Z2", z2)];
+        [
+            AxisFormula {
+                name: "altitude",
+                size: self.size[0],
+                coordinate: "U = Z1 / Z2, Z1 = sqrt(r^2 - r_ground^2)",
+                inverse: "r = sqrt(r_ground^2 + (U Z2)^2)",
+                constants: radii.clone(),
+            },
+            AxisFormula {
+                name: "view",
+                size: self.size[1],
+                coordinate: "V = (d - d_min) / (d_max - d_min). First half of the texels, rays that hit the \
+                    ground: d = -r mu - sqrt(r^2 mu^2 - Z1^2), d_min = r - r_ground, d_max = Z1. Second half, \
+                    rays that do not: d = -r mu + sqrt(r^2 mu^2 - Z1^2 + Z2^2), d_min = r_top - r, \
+                    d_max = Z1 + Z2. Never filter across the halves",
+                inverse: "d = d_min + V (d_max - d_min). First half: mu = -(Z1^2 + d^2) / (2 r d). Second \
+                    half: mu = (Z2^2 - Z1^2 - d^2) / (2 r d)",
+                constants: radii,
+            },
+            AxisFormula {
+                name: "sun",
+                size: self.size[2],
+                coordinate: "W = (1 - exp(-a (mu_s - mu_s_min))) / (1 - exp(-a (1 - mu_s_min))); the table \
+                    is 0 for mu_s < mu_s_min",
+                inverse: "mu_s = mu_s_min - ln(1 - W (1 - exp(-a (1 - mu_s_min)))) / a",
+                constants: vec![("a", SUN_STEEPNESS), ("mu_s_min", self.mu_s_min)],
+            },
+            AxisFormula {
+                name: "azimuth",
+                size: self.size[3],
+                coordinate: "R = (1 + cos(phi)) / 2",
+                inverse: "cos(phi) = 2 R - 1",
+                constants: Vec::new(),
+            },
+        ]
+    }
+}

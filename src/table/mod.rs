@@ -1,0 +1,7 @@
+//! Tables as arrays, and the mappings between physical coordinates and texels. No physics here.
+
+mod array;
+mod elek2010;
+
+pub use array::{Array, Element, Texel, texel};
+pub use elek2010::{AxisFormula, Elek2010};
