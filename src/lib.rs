@@ -23,5 +23,7 @@ pub mod isa;
 pub mod lanes;
 pub mod medium;
 pub mod points;
+pub mod preset;
+pub mod spectrum;
 
 pub use error::{Error, Result};
