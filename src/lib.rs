@@ -26,5 +26,7 @@ pub mod methods;
 pub mod points;
 pub mod transport;
 pub mod table;
+pub mod preset;
+pub mod spectrum;
 
 pub use error::{Error, Result};

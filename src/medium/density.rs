@@ -1,7 +1,8 @@
 //! Relative density of a constituent against altitude.
 
 /// A relative density profile. Altitudes in metres over the ground.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum DensityProfile {
     /// exp(−altitude / scale height) (Elek & Kmoch Eq. 3).
     Exponential { scale_height: f64 },

@@ -8,7 +8,8 @@ pub use density::DensityProfile;
 pub use phase::PhaseFunction;
 
 /// What a constituent's scattered light counts as in tables that keep gas and aerosol apart.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Role {
     Gas,
     Aerosol,

@@ -1,0 +1,118 @@
+//! The presets and spectra that are inside the binary.
+
+use crate::error::{Error, Result};
+use crate::spectrum::Spectrum;
+use std::path::Path;
+
+/// Name and JSON text of every shipped planet, in the order they are listed.
+const PLANETS: &[(&str, &str)] = &[
+    ("earth", include_str!("../../presets/planets/earth.json")),
+    ("earth-paper", include_str!("../../presets/planets/earth-paper.json")),
+];
+
+/// Name and CSV text of every shipped spectrum.
+const SPECTRA: &[(&str, &str)] = &[
+    ("ozone-serdyuchenko-233k", include_str!("../../presets/spectra/ozone-serdyuchenko-233k.csv")),
+    ("sun-tsis1-hsrs", include_str!("../../presets/spectra/sun-tsis1-hsrs.csv")),
+];
+
+/// Names of the shipped presets.
+pub fn shipped_names() -> impl Iterator<Item = &'static str> {
+    PLANETS.iter().map(|p| p.0)
+}
+
+/// Name and one-line description of every shipped preset.
+pub fn shipped() -> Vec<(&'static str, String)> {
+    let describe = |(name, text): &(&'static str, &str)| {
+        let value: serde_json::Value = serde_json::from_str(text).unwrap_or_default();
+        (*name, value["description"].as_str().unwrap_or_default().to_string())
+    };
+    PLANETS.iter().map(describe).collect()
+}
+
+/// File name (as in the source tree) and JSON text of a shipped preset.
+pub fn planet(name: &str) -> Option<(String, &'static str)> {
+    let (_, text) = PLANETS.iter().find(|p| p.0 == name)?;
+    Some((format!("presets/planets/{name}.json"), text))
+}
+
+/// Names of the shipped spectra.
+pub fn spectrum_names() -> impl Iterator<Item = &'static str> {
+    SPECTRA.iter().map(|s| s.0)
+}
+
+/// A shipped spectrum by name, or a CSV file beside the preset by a name that ends in `.csv`. The file has a
+/// line `# source: …`, then a header `wavelength_nm,<quantity>`, which must be `quantity`, then rows.
+pub fn spectrum(name: &str, quantity: &str, beside: &str) -> Result<Option<Spectrum>> {
+    if let Some((_, text)) = SPECTRA.iter().find(|s| s.0 == name) {
+        return parse(&format!("presets/spectra/{name}.csv"), text, quantity).map(Some);
+    }
+    if !name.ends_with(".csv") {
+        return Ok(None);
+    }
+    let path = Path::new(beside).parent().unwrap_or(Path::new("")).join(name);
+    let text = std::fs::read_to_string(&path).map_err(|e| Error::reading(&path, e))?;
+    parse(&path.display().to_string(), &text, quantity).map(Some)
+}
+
+fn parse(file: &str, text: &str, quantity: &str) -> Result<Spectrum> {
+    let has_source = |l: &str| l.strip_prefix("# source:").is_some_and(|s| !s.trim().is_empty());
+    if !text.lines().any(has_source) {
+        return Err(Error::file(file, "numbers without a source: a line `# source: …` is missing"));
+    }
+    let mut lines = text.lines().enumerate().filter(|(_, l)| !l.starts_with('#') && !l.trim().is_empty());
+    let header = lines.next().map_or("", |(_, l)| l.trim());
+    let expected = format!("wavelength_nm,{quantity}");
+    if header != expected {
+        return Err(Error::file(file, format!("header is `{header}` but `{expected}` is needed")));
+    }
+    let (mut wavelengths, mut values) = (Vec::new(), Vec::new());
+    for (number, line) in lines {
+        let row: Vec<f64> = line.split(',').filter_map(|t| t.trim().parse().ok()).collect();
+        let &[wavelength, value] = row.as_slice() else {
+            return Err(Error::file(file, format!("line {}: `{line}` is not two numbers", number + 1)));
+        };
+        wavelengths.push(wavelength);
+        values.push(value);
+    }
+    Spectrum::new(wavelengths, values).map_err(|e| Error::file(file, e))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every file under presets/ is inside the binary, or it would be missing from an installed tool.
+    #[test]
+    fn every_file_is_shipped() {
+        let names = |folder: &str| {
+            let entries =
+                std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("presets").join(folder));
+            let stem = |e: std::io::Result<std::fs::DirEntry>| {
+                e.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned()
+            };
+            let mut list: Vec<String> = entries.unwrap().map(stem).collect();
+            list.sort();
+            list
+        };
+        let mut planets: Vec<&str> = shipped_names().collect();
+        planets.sort_unstable();
+        assert_eq!(names("planets"), planets);
+        let mut spectra: Vec<&str> = spectrum_names().chain(["cie1931-2deg"]).collect();
+        spectra.sort_unstable();
+        assert_eq!(names("spectra"), spectra);
+    }
+
+    /// A table without a source, with another quantity or with a broken row is refused and says where.
+    #[test]
+    fn bad_tables_are_refused() {
+        let quantity = "cross_section_m2";
+        let good = "# source: me 2020\nwavelength_nm,cross_section_m2\n400,1e-28\n500,2e-28\n";
+        assert_eq!(parse("a.csv", good, quantity).unwrap().at(450.0), 1.5e-28);
+        let refuse = |text: &str| parse("a.csv", text, quantity).unwrap_err().to_string();
+        assert!(refuse(&good.replace("# source: me 2020", "# source:")).contains("without a source"));
+        assert!(refuse(&good.replace("cross_section_m2", "irradiance")).contains("header"));
+        assert!(refuse(&good.replace("2e-28", "x")).contains("line 4"));
+        assert!(refuse(&good.replace("500", "300")).contains("must rise"));
+    }
+}

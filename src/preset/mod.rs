@@ -1,0 +1,66 @@
+//! Presets: from a JSON file, shipped or the user's own, to a validated planet in SI.
+//!
+//! Two types and one border. [`raw`] is the file as written: any JSON, with the path of every value for error
+//! messages. [`Planet`] is what the rest of the program sees: every number checked, in SI, named spectra looked
+//! up. The modules `read_*` are the border, and the only place that knows the units of files.
+
+mod coefficient;
+mod json;
+mod library;
+mod overrides;
+mod phase;
+mod planet;
+mod raw;
+mod rayleigh;
+mod read_coefficient;
+mod read_constituent;
+mod read_phase;
+mod read_planet;
+mod read_profile;
+mod read_spectrum;
+
+pub use coefficient::Coefficient;
+pub use library::{shipped, shipped_names};
+pub use phase::{KingFactor, PhaseLaw, Stated};
+pub use planet::{Optics, Planet, Star, Substance};
+pub use rayleigh::{AIR_NUMBER_DENSITY, air_cross_section, air_king_factor, air_refractivity};
+
+use crate::error::{Error, Result};
+use raw::Raw;
+use std::path::Path;
+
+/// A planet by the name of a shipped preset (`earth`) or by the path of a JSON file, with `path.to.key=value`
+/// overrides applied to the JSON before it is read (see [`overrides`]).
+///
+/// Errors name the file, the key's path, the value and the reason; an unknown name brings the nearest one.
+pub fn load(name_or_path: &str, set: &[String]) -> Result<Planet> {
+    let (file, text) = find(name_or_path)?;
+    read(&file, &text, set)
+}
+
+/// A planet from JSON text; `file` names it in errors and is the folder's origin for its spectra.
+pub fn read(file: &str, text: &str, set: &[String]) -> Result<Planet> {
+    let mut value = json::parse(file, text)?;
+    for assignment in set {
+        overrides::apply(&mut value, file, assignment)?;
+    }
+    let root = Raw::root(file, &value);
+    root.check_sources()?;
+    read_planet::planet(&root)
+}
+
+/// File name for messages, and the text.
+fn find(name_or_path: &str) -> Result<(String, String)> {
+    if let Some((file, text)) = library::planet(name_or_path) {
+        return Ok((file, text.to_string()));
+    }
+    let path = Path::new(name_or_path);
+    if path.extension().is_some() || path.components().count() > 1 {
+        let text = std::fs::read_to_string(path).map_err(|e| Error::reading(path, e))?;
+        return Ok((name_or_path.to_string(), text));
+    }
+    let nearest = raw::nearest(name_or_path, shipped_names());
+    Err(Error::Argument(format!(
+        "no preset is called `{name_or_path}`; the nearest is `{nearest}` (a path to a .json file works too)"
+    )))
+}

@@ -1,0 +1,257 @@
+//! A value of a preset file with the path that leads to it, so that every complaint says where.
+
+use crate::error::{Error, Result};
+use serde_json::{Map, Value};
+
+/// A JSON value, the file it stands in and the path to it (`constituents[1].phase.g`).
+#[derive(Clone, Debug)]
+pub struct Raw<'a> {
+    file: &'a str,
+    path: String,
+    value: &'a Value,
+}
+
+impl<'a> Raw<'a> {
+    pub fn root(file: &'a str, value: &'a Value) -> Self {
+        Raw { file, path: String::new(), value }
+    }
+
+    pub fn file(&self) -> &'a str {
+        self.file
+    }
+
+    /// Path of this value; `(top level)` for the whole file.
+    pub fn path(&self) -> &str {
+        if self.path.is_empty() { "(top level)" } else { &self.path }
+    }
+
+    /// An error about this value.
+    pub fn refuse(&self, reason: impl ToString) -> Error {
+        Error::Value {
+            file: self.file.to_string(),
+            key: self.path().to_string(),
+            value: brief(self.value),
+            reason: reason.to_string(),
+        }
+    }
+
+    fn child(&self, key: &str, value: &'a Value) -> Raw<'a> {
+        let path = if self.path.is_empty() { key.to_string() } else { format!("{}.{key}", self.path) };
+        Raw { file: self.file, path, value }
+    }
+
+    fn map(&self) -> Result<&'a Map<String, Value>> {
+        self.value.as_object().ok_or_else(|| self.refuse("must be an object { … }"))
+    }
+
+    /// Refuses keys that are not known here, naming the nearest; `source` is known everywhere.
+    pub fn only(&self, known: &[&str]) -> Result<()> {
+        let known_here = || known.iter().copied().chain(["source"]);
+        for (key, value) in self.map()? {
+            if !known_here().any(|k| k == key) {
+                let reason =
+                    format!("unknown key; the nearest known one is `{}`", nearest(key, known_here()));
+                return Err(self.child(key, value).refuse(reason));
+            }
+        }
+        Ok(())
+    }
+
+    pub fn get(&self, key: &str) -> Result<Option<Raw<'a>>> {
+        Ok(self.map()?.get_key_value(key).map(|(k, v)| self.child(k, v)))
+    }
+
+    pub fn need(&self, key: &str) -> Result<Raw<'a>> {
+        self.get(key)?.ok_or_else(|| self.refuse(format!("`{key}` is missing")))
+    }
+
+    /// The only one of several alternative keys that is given, with its number in the list.
+    pub fn one_of(&self, keys: &[&str]) -> Result<(usize, Raw<'a>)> {
+        self.at_most_one_of(keys)?.ok_or_else(|| self.refuse(format!("one of {} is missing", quoted(keys))))
+    }
+
+    /// The only one of several alternative keys, or none; two are refused.
+    pub fn at_most_one_of(&self, keys: &[&str]) -> Result<Option<(usize, Raw<'a>)>> {
+        let mut found = None;
+        for (k, key) in keys.iter().enumerate() {
+            if let Some(raw) = self.get(key)? {
+                if found.is_some() {
+                    return Err(raw.refuse(format!("give only one of {}", quoted(keys))));
+                }
+                found = Some((k, raw));
+            }
+        }
+        Ok(found)
+    }
+
+    pub fn is_number(&self) -> bool {
+        self.value.is_number()
+    }
+
+    pub fn is_text(&self) -> bool {
+        self.value.is_string()
+    }
+
+    pub fn text(&self) -> Result<&'a str> {
+        self.value.as_str().ok_or_else(|| self.refuse("must be a text"))
+    }
+
+    /// A text out of a list, by number; another is refused with the nearest.
+    pub fn choice(&self, choices: &[&str]) -> Result<usize> {
+        let text = self.text()?;
+        choices.iter().position(|c| *c == text).ok_or_else(|| {
+            let nearest = nearest(text, choices.iter().copied());
+            self.refuse(format!(
+                "unknown here; the nearest known one is `{nearest}`, all are {}",
+                quoted(choices)
+            ))
+        })
+    }
+
+    /// A finite number.
+    pub fn number(&self) -> Result<f64> {
+        match self.value.as_f64() {
+            Some(v) if v.is_finite() => Ok(v),
+            _ => Err(self.refuse("must be a finite number")),
+        }
+    }
+
+    /// A number for which `holds`; `what` says what it must be.
+    pub fn number_that(&self, what: &str, holds: impl Fn(f64) -> bool) -> Result<f64> {
+        let v = self.number()?;
+        if holds(v) { Ok(v) } else { Err(self.refuse(format!("must be {what}"))) }
+    }
+
+    pub fn positive(&self) -> Result<f64> {
+        self.number_that("greater than 0", |v| v > 0.0)
+    }
+
+    pub fn items(&self) -> Result<Vec<Raw<'a>>> {
+        let list = self.value.as_array().ok_or_else(|| self.refuse("must be a list [ … ]"))?;
+        let item = |(k, value)| Raw { file: self.file, path: format!("{}[{k}]", self.path), value };
+        Ok(list.iter().enumerate().map(item).collect())
+    }
+
+    /// A list of numbers for which `holds`; a bad one is named by its place.
+    pub fn numbers_that(&self, what: &str, holds: impl Fn(f64) -> bool) -> Result<Vec<f64>> {
+        self.items()?.iter().map(|item| item.number_that(what, &holds)).collect()
+    }
+
+    /// A list of at least `least` numbers, each greater than the one before.
+    pub fn rising(&self, least: usize) -> Result<Vec<f64>> {
+        let items = self.items()?;
+        if items.len() < least {
+            return Err(self.refuse(format!("must have {least} or more numbers")));
+        }
+        let mut list: Vec<f64> = Vec::with_capacity(items.len());
+        for item in items {
+            let v = item.number()?;
+            if list.last().is_some_and(|&last| v <= last) {
+                return Err(item.refuse("must be greater than the number before it"));
+            }
+            list.push(v);
+        }
+        Ok(list)
+    }
+
+    /// Key `{stem}_m` or `{stem}_km`, whichever is given, as a length in metres for which `holds`.
+    pub fn length(&self, stem: &str, what: &str, holds: impl Fn(f64) -> bool) -> Result<f64> {
+        let (metres, kilometres) = (format!("{stem}_m"), format!("{stem}_km"));
+        let (unit, raw) = self.one_of(&[&kilometres, &metres])?;
+        Ok(raw.number_that(what, holds)? * [1e3, 1.0][unit])
+    }
+
+    /// Every object that holds numbers must say where they come from.
+    pub fn check_sources(&self) -> Result<()> {
+        match self.value {
+            Value::Object(map) => {
+                let source = map.get("source");
+                if source.is_none() && map.values().any(bears_numbers) {
+                    return Err(self.refuse(
+                        "numbers without a source: add \"source\", a citation or \"project choice: why\"",
+                    ));
+                }
+                if let Some(source) = source
+                    && source.as_str().is_none_or(|text| text.trim().is_empty())
+                {
+                    return Err(self.child("source", source).refuse("must be a text that is not empty"));
+                }
+                map.iter().try_for_each(|(key, value)| self.child(key, value).check_sources())
+            }
+            Value::Array(_) => self.items()?.iter().try_for_each(Raw::check_sources),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// True of a number and of a list that holds numbers, at any depth.
+pub fn bears_numbers(value: &Value) -> bool {
+    match value {
+        Value::Number(_) => true,
+        Value::Array(list) => list.iter().any(bears_numbers),
+        _ => false,
+    }
+}
+
+/// The candidate most like a word: the least share of letters to change (Damerau–Levenshtein), the first of
+/// equals; "" where there is none.
+pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> &'a str {
+    let difference = |c: &&str| -strsim::normalized_damerau_levenshtein(word, c);
+    candidates.into_iter().min_by(|a, b| difference(a).total_cmp(&difference(b))).unwrap_or("")
+}
+
+fn quoted(keys: &[&str]) -> String {
+    keys.iter().map(|k| format!("`{k}`")).collect::<Vec<_>>().join(", ")
+}
+
+/// JSON of a value on one short line.
+fn brief(value: &Value) -> String {
+    const MOST: usize = 60;
+    let text = value.to_string();
+    if text.chars().count() <= MOST {
+        return text;
+    }
+    text.chars().take(MOST).chain(['…']).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    /// Errors carry the path as one would type it, and a slip of the pen brings the key that was meant.
+    #[test]
+    fn errors_name_the_place_and_the_nearest_key() {
+        let value = json!({"constituents": [{"phase": {"g": 1.5}, "densty_factor": 1}]});
+        let root = Raw::root("a.json", &value);
+        let item = root.need("constituents").unwrap().items().unwrap().remove(0);
+        let g = item.need("phase").unwrap().need("g").unwrap();
+        let error = g.number_that("between -1 and 1", |v| v.abs() < 1.0).unwrap_err().to_string();
+        assert_eq!(error, "a.json: constituents[0].phase.g = 1.5: must be between -1 and 1");
+        let error = item.only(&["phase", "density_factor", "profile"]).unwrap_err().to_string();
+        assert!(error.contains("constituents[0].densty_factor = 1"), "{error}");
+        assert!(error.contains("nearest known one is `density_factor`"), "{error}");
+    }
+
+    /// A number needs a source in the object that holds it, also when it sits in a list; texts need none.
+    #[test]
+    fn numbers_need_sources() {
+        let check = |v: Value| Raw::root("a.json", &v).check_sources().map_err(|e| e.to_string());
+        assert!(check(json!({"name": "x", "list": [{"kind": "isotropic"}]})).is_ok());
+        assert!(check(json!({"a": {"b": 1, "source": "somewhere 1999"}})).is_ok());
+        assert!(check(json!({"a": {"b": 1}})).unwrap_err().starts_with("a.json: a = {\"b\":1}"));
+        assert!(check(json!({"a": [{"b": [[1.0]]}]})).unwrap_err().starts_with("a.json: a[0]"));
+        assert!(check(json!({"b": 1, "source": " "})).unwrap_err().contains("source"));
+        assert!(check(json!({"b": 1, "source": 7})).unwrap_err().contains("source"));
+    }
+
+    /// Lengths come in metres or kilometres by their key, never in both.
+    #[test]
+    fn units_are_in_the_key() {
+        let length = |v: Value| Raw::root("a", &v).length("top", "greater than 0", |v| v > 0.0).ok();
+        assert_eq!(length(json!({"top_km": 2.5})), Some(2500.0));
+        assert_eq!(length(json!({"top_m": 2.5})), Some(2.5));
+        assert_eq!(length(json!({"top_m": 2.5, "top_km": 1})), None);
+        assert_eq!(length(json!({"top_km": 0})), None);
+    }
+}

@@ -1,0 +1,100 @@
+//! An item of `constituents` → [`Substance`].
+
+use super::coefficient::Coefficient;
+use super::phase::PhaseLaw;
+use super::planet::{Optics, Substance};
+use super::raw::Raw;
+use super::read_coefficient::coefficient;
+use super::read_phase::phase;
+use super::read_profile::{absent, profile};
+use super::read_spectrum::{SHARE, held, spectrum};
+use crate::error::Result;
+use crate::medium::Role;
+use crate::spectrum::Spectrum;
+
+/// The constituent, and warnings about what its tables leave open; `height` is that of the shell, m.
+pub fn constituent(raw: &Raw, height: f64) -> Result<(Substance, Vec<String>)> {
+    raw.only(&[
+        "name",
+        "role",
+        "density_factor",
+        "profile",
+        "scattering",
+        "absorption",
+        "extinction",
+        "single_scattering_albedo",
+        "phase",
+    ])?;
+    let name = raw.need("name")?;
+    if name.text()?.trim().is_empty() {
+        return Err(name.refuse("must not be empty"));
+    }
+    let profile = profile(&raw.need("profile")?)?;
+    let optics = optics(raw, profile.column(0.0, height))?;
+    let factor = raw.get("density_factor")?.map(|f| f.number_that("0 or more", |v| v >= 0.0));
+    let substance = Substance {
+        name: name.text()?.to_string(),
+        role: [Role::Gas, Role::Aerosol][raw.need("role")?.choice(&["gas", "aerosol"])?],
+        density_factor: factor.unwrap_or(Ok(1.0))?,
+        phase: phase_of(raw, &optics)?,
+        optics,
+        profile,
+    };
+    let warnings = warnings(&substance, height);
+    Ok((substance, warnings))
+}
+
+fn optics(raw: &Raw, column: f64) -> Result<Optics> {
+    let read = |key: &str| -> Result<Option<Coefficient>> {
+        raw.get(key)?.map(|r| coefficient(&r, column)).transpose()
+    };
+    let (scattering, absorption, extinction) =
+        (read("scattering")?, read("absorption")?, read("extinction")?);
+    let albedo = raw.get("single_scattering_albedo")?;
+    match (scattering, absorption, extinction, albedo) {
+        (None, None, Some(extinction), Some(albedo)) => Ok(Optics::ExtinctionAndAlbedo {
+            extinction,
+            single_scattering_albedo: spectrum(&albedo, SHARE)?,
+        }),
+        (None, None, Some(_), None) => Err(raw.refuse("`extinction` needs `single_scattering_albedo`")),
+        (scattering, absorption, None, None) if scattering.is_some() || absorption.is_some() => {
+            Ok(Optics::ScatteringAndAbsorption {
+                scattering: scattering.unwrap_or(Coefficient::zero()),
+                absorption: absorption.unwrap_or(Coefficient::zero()),
+            })
+        }
+        _ => Err(raw.refuse(
+            "needs `scattering` or `absorption` (or both), or else `extinction` and `single_scattering_albedo`",
+        )),
+    }
+}
+
+/// A phase function may be left out where nothing is scattered.
+fn phase_of(raw: &Raw, optics: &Optics) -> Result<PhaseLaw> {
+    match (raw.get("phase")?, optics) {
+        (Some(given), _) => phase(&given),
+        (None, Optics::ScatteringAndAbsorption { scattering, .. }) if *scattering == Coefficient::zero() => {
+            Ok(PhaseLaw::Isotropic)
+        }
+        (None, _) => Err(raw.refuse("`phase` is missing")),
+    }
+}
+
+fn warnings(c: &Substance, height: f64) -> Vec<String> {
+    let named = |what: &str, spectra: Vec<&Spectrum>| -> Vec<String> {
+        spectra.into_iter().filter_map(|s| held(&format!("{what} of {}", c.name), s)).collect()
+    };
+    let mut list: Vec<String> = absent(&c.name, &c.profile, height).into_iter().collect();
+    match &c.optics {
+        Optics::ScatteringAndAbsorption { scattering, absorption } => {
+            list.extend(named("scattering", scattering.spectra()));
+            list.extend(named("absorption", absorption.spectra()));
+        }
+        Optics::ExtinctionAndAlbedo { extinction, single_scattering_albedo } => {
+            list.extend(named("extinction", extinction.spectra()));
+            list.extend(named("single_scattering_albedo", vec![single_scattering_albedo]));
+        }
+    }
+    list.extend(named("phase function", c.phase.spectra()));
+    list
+}

@@ -1,0 +1,127 @@
+//! The top level of a preset: name, ground, top, star, constituents → [`Planet`].
+
+use super::planet::{Planet, Star};
+use super::raw::Raw;
+use super::read_constituent::constituent;
+use super::read_spectrum::{IRRADIANCE, SHARE, held, spectrum, table};
+use crate::error::Result;
+use crate::spectrum::{OBSERVER_RANGE, Spectrum, planck_law};
+use std::f64::consts::PI;
+
+/// Astronomical unit, m (IAU 2012 Resolution B2, exact).
+const ASTRONOMICAL_UNIT: f64 = 149_597_870_700.0;
+
+/// The whole planet.
+pub fn planet(raw: &Raw) -> Result<Planet> {
+    raw.only(&["name", "description", "ground", "top", "star", "constituents"])?;
+    let ground = raw.need("ground")?;
+    ground.only(&["radius_km", "radius_m", "albedo"])?;
+    let ground_radius = ground.length("radius", "greater than 0", |v| v > 0.0)?;
+    let ground_albedo = spectrum(&ground.need("albedo")?, SHARE)?;
+    let top = raw.need("top")?;
+    top.only(&["height_km", "height_m"])?;
+    let height = top.length("height", "greater than 0", |v| v > 0.0)?;
+    if ground_radius + height <= ground_radius {
+        return Err(top.refuse("the shell is too thin for its radius to be told from the ground's"));
+    }
+    let star_raw = raw.need("star")?;
+    let star = star(&star_raw)?;
+
+    let mut warnings: Vec<String> = held("ground albedo", &ground_albedo).into_iter().collect();
+    warnings.extend(held("spectrum of the star", &star.irradiance));
+    let mut constituents = Vec::new();
+    for item in raw.need("constituents")?.items()? {
+        let (substance, about) = constituent(&item, height)?;
+        if constituents.iter().any(|c: &super::Substance| c.name == substance.name) {
+            return Err(item.need("name")?.refuse("another constituent has this name"));
+        }
+        warnings.extend(about);
+        constituents.push(substance);
+    }
+    Ok(Planet {
+        name: name(raw)?,
+        description: raw.need("description")?.text()?.to_string(),
+        ground_radius,
+        top_radius: ground_radius + height,
+        ground_albedo,
+        star,
+        constituents,
+        warnings,
+    })
+}
+
+/// The name becomes a folder's, so only letters that every file system and shell takes are let in.
+fn name(raw: &Raw) -> Result<String> {
+    let raw = raw.need("name")?;
+    let text = raw.text()?;
+    let good = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+    if text.is_empty() || !text.chars().all(good) {
+        return Err(raw.refuse("must consist of lower-case letters, digits and dashes"));
+    }
+    Ok(text.to_string())
+}
+
+fn star(raw: &Raw) -> Result<Star> {
+    raw.only(&[
+        "black_body_k",
+        "spectrum",
+        "spectrum_at_au",
+        "distance_au",
+        "radius_km",
+        "radius_m",
+        "angular_radius_deg",
+        "limb_darkening",
+    ])?;
+    let distance = raw.need("distance_au")?.positive()? * ASTRONOMICAL_UNIT;
+    let angular_radius = angular_radius(raw, distance)?;
+    let limb_darkening = raw.get("limb_darkening")?;
+    Ok(Star {
+        irradiance: irradiance(raw, distance, angular_radius)?,
+        angular_radius,
+        distance,
+        limb_darkening: limb_darkening.map_or(Ok(0.0), |l| l.number_that(SHARE.bounds, SHARE.holds))?,
+    })
+}
+
+fn angular_radius(raw: &Raw, distance: f64) -> Result<f64> {
+    let (which, given) = raw.one_of(&["angular_radius_deg", "radius_km", "radius_m"])?;
+    if which == 0 {
+        return Ok(given
+            .number_that("greater than 0 and less than 90", |v| v > 0.0 && v < 90.0)?
+            .to_radians());
+    }
+    let radius = given.positive()? * [1e3, 1.0][which - 1];
+    if radius >= distance {
+        return Err(given.refuse("the star would reach its planet"));
+    }
+    Ok(libm::asin(radius / distance))
+}
+
+/// Irradiance at the planet, W/(m² nm). A black body's is π B sin² α, tabulated at 1 nm; a measured spectrum is
+/// brought from the distance it was measured at.
+fn irradiance(raw: &Raw, distance: f64, angular_radius: f64) -> Result<Spectrum> {
+    let (which, given) = raw.one_of(&["black_body_k", "spectrum"])?;
+    let measured_at = raw.get("spectrum_at_au")?;
+    if which == 0 {
+        if let Some(unused) = measured_at {
+            return Err(unused.refuse("belongs to `spectrum`, but the star is a black body"));
+        }
+        let temperature = given.number_that("between 100 and 1000000", |v| (100.0..=1e6).contains(&v))?;
+        let sine = libm::sin(angular_radius);
+        let grid = (OBSERVER_RANGE.0..=OBSERVER_RANGE.1).map(|w| w as f64).collect();
+        let per_nm = PI * sine * sine * 1e-9;
+        return Spectrum::sampled(grid, |w| per_nm * planck_law(w, temperature)).map_err(|e| given.refuse(e));
+    }
+    let spectrum = if given.is_text() || given.is_number() {
+        spectrum(&given, IRRADIANCE)?
+    } else {
+        given.only(&["wavelengths_nm", IRRADIANCE.column])?;
+        table(&given, IRRADIANCE.column, IRRADIANCE.bounds, IRRADIANCE.holds)?
+    };
+    if spectrum.range().1 <= 0.0 {
+        return Err(given.refuse("the star is dark"));
+    }
+    let measured_at = raw.need("spectrum_at_au")?.positive()?;
+    let ratio = measured_at * ASTRONOMICAL_UNIT / distance;
+    Ok(spectrum.scaled(ratio * ratio))
+}
