@@ -175,7 +175,11 @@ impl Atlas {
         if !fits(self.width, self.columns) || !fits(self.height, self.rows()) {
             return refuse(format!("width, height, slices, columns = {sides:?} make too large a picture"));
         }
-        match self.channels.iter().find(|c| Some(c.samples.len()) != self.slice_len().checked_mul(self.slices)) {
+        match self
+            .channels
+            .iter()
+            .find(|c| Some(c.samples.len()) != self.slice_len().checked_mul(self.slices))
+        {
             Some(c) => refuse(format!("channel {} has {} samples", c.name, c.samples.len())),
             None if self.channels.is_empty() => refuse("there is no channel".into()),
             None => Ok(()),

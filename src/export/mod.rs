@@ -3,5 +3,8 @@
 
 pub mod atlas;
 pub mod exr;
+pub mod interrupt;
+pub mod replace;
+pub mod staging;
 
 pub use atlas::{Atlas, Attribute, Channel, Samples};

@@ -143,9 +143,9 @@ fn empty_atlas(name: String, header: &Header) -> Read<Atlas> {
 /// What the caller of the writer added: all but the attributes that the writer makes itself.
 fn custom_attributes(header: &Header) -> BTreeMap<String, Attribute> {
     let own = ["pixelAspectRatio", "screenWindowWidth"];
-    let custom = header.iter().filter(|(name, _)| {
-        !header::PACKING.contains(&name.as_str()) && !own.contains(&name.as_str())
-    });
+    let custom = header
+        .iter()
+        .filter(|(name, _)| !header::PACKING.contains(&name.as_str()) && !own.contains(&name.as_str()));
     custom.filter_map(|(name, (kind, bytes))| Some((name.clone(), header::decode(kind, bytes)?))).collect()
 }
 
