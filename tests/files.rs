@@ -3,4 +3,5 @@
 mod files {
     mod exr;
     mod staging;
+    mod verify;
 }

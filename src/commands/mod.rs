@@ -1,1 +1,2 @@
 //! One short file a command.
+pub mod verify;

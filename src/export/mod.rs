@@ -3,8 +3,12 @@
 
 pub mod atlas;
 pub mod exr;
+mod font;
 pub mod interrupt;
+pub mod manifest;
+pub mod picture;
 pub mod replace;
+pub mod sheet;
 pub mod staging;
 
 pub use atlas::{Atlas, Attribute, Channel, Samples};

@@ -205,22 +205,23 @@ fn stored_tiles<'a>(atlas: &Atlas, cursor: &mut Cursor<'a>, tile_bytes: usize) -
     Ok(tiles)
 }
 
+/// The lines of tiles, each channel's put together in the order `[slice][y][x]`.
 fn unravel(atlas: &Atlas, types: &[(String, usize)], tiles: &[Vec<u8>]) -> Vec<Channel> {
     let line_bytes: usize = types.iter().map(|(_, bytes)| bytes * atlas.width).sum();
-    let mut start = 0;
-    let mut channels = Vec::with_capacity(types.len());
-    for (name, bytes) in types {
-        let range = start..start + bytes * atlas.width;
-        start = range.end;
-        let lines = tiles.iter().flat_map(|t| t.chunks_exact(line_bytes)).map(|line| &line[range.clone()]);
+    let before = |k: usize| types[..k].iter().map(|(_, bytes)| bytes * atlas.width).sum::<usize>();
+    let channel = |(k, (name, bytes)): (usize, &(String, usize))| {
+        let place = before(k)..before(k) + bytes * atlas.width;
+        let mut stream = Vec::with_capacity(atlas.slices * atlas.slice_len() * bytes);
+        for line in tiles.iter().flat_map(|tile| tile.chunks_exact(line_bytes)) {
+            stream.extend_from_slice(&line[place.clone()]);
+        }
         let samples = if *bytes == 2 {
-            let pairs = lines.flat_map(|line| line.chunks_exact(2));
-            Samples::Half(pairs.map(|b| f16::from_le_bytes([b[0], b[1]])).collect())
+            Samples::Half(stream.chunks_exact(2).map(|b| f16::from_le_bytes([b[0], b[1]])).collect())
         } else {
-            let fours = lines.flat_map(|line| line.chunks_exact(4));
+            let fours = stream.chunks_exact(4);
             Samples::Float(fours.map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
         };
-        channels.push(Channel { name: name.clone(), samples });
-    }
-    channels
+        Channel { name: name.clone(), samples }
+    };
+    types.par_iter().enumerate().map(channel).collect()
 }
