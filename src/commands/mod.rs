@@ -1,0 +1,2 @@
+//! One short file a command.
+pub mod verify;

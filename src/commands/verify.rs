@@ -1,0 +1,203 @@
+//! `tyndall verify`: do the files of a bake match their manifest, its preset, and this tool?
+
+use crate::error::{Error, Result};
+use crate::export::atlas::{Atlas, Samples};
+use crate::export::exr::from_exr_bytes;
+use crate::export::manifest::{MANIFEST, Manifest, Precision, Table, hash_of};
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::Write;
+use std::path::{Component, Path, PathBuf};
+
+/// Arguments of `tyndall verify`.
+#[derive(Debug, clap::Args)]
+#[command(
+    about = "Check that the files of a bake match their manifest, its preset and this tool",
+    before_help = "tyndall verify out/earth     # 0: all holds; 1: something differs, a line for each; 2: no bake"
+)]
+pub struct Args {
+    /// The folder of a bake (the one with bake.json in it)
+    pub bake: PathBuf,
+    /// Answer in JSON: {"bake", "holds", "differences": [{"place", "what"}]}
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// One thing that does not hold.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Difference {
+    /// A file inside the bake, or a key of its manifest.
+    pub place: String,
+    pub what: String,
+}
+
+/// Prints what differs, on stdout.
+///
+/// # Errors
+/// `Check` if anything differs, `File` if there is no bake to check.
+pub fn run(args: &Args) -> Result<()> {
+    let differences = differences(&args.bake, |_| None)?;
+    print(args, &differences).map_err(|e| Error::machine("stdout", e))?;
+    match differences.len() {
+        0 => Ok(()),
+        1 => Err(Error::Check(format!("{}: 1 difference", args.bake.display()))),
+        n => Err(Error::Check(format!("{}: {n} differences", args.bake.display()))),
+    }
+}
+
+fn print(args: &Args, differences: &[Difference]) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    let bake = args.bake.display();
+    if args.json {
+        let holds = differences.is_empty();
+        let answer =
+            serde_json::json!({"bake": bake.to_string(), "holds": holds, "differences": differences});
+        return writeln!(out, "{answer:#}");
+    }
+    for d in differences {
+        writeln!(out, "{bake}: {}: {}", d.place, d.what)?;
+    }
+    if differences.is_empty() { writeln!(out, "{bake}: every file matches its manifest") } else { Ok(()) }
+}
+
+/// What differs in the bake at `bake`. `shipped` gives the hash of the preset of a name that this tool ships.
+pub fn differences(bake: &Path, shipped: impl Fn(&str) -> Option<String>) -> Result<Vec<Difference>> {
+    let manifest = Manifest::read(bake)?;
+    let folder = if bake.is_dir() { bake } else { bake.parent().unwrap_or(Path::new(".")) };
+    let mut found = about_the_manifest(&manifest, shipped);
+    for table in &manifest.tables {
+        let whats = check_file(folder, &table.file, &table.blake3, |bytes| check_table(table, bytes));
+        found.extend(whats.into_iter().map(|what| difference(&table.file, what)));
+    }
+    for other in &manifest.files {
+        let whats = check_file(folder, &other.file, &other.blake3, |_| Vec::new());
+        found.extend(whats.into_iter().map(|what| difference(&other.file, what)));
+    }
+    found.extend(unlisted(folder, &manifest)?);
+    Ok(found)
+}
+
+fn difference(place: &str, what: impl Into<String>) -> Difference {
+    Difference { place: place.to_string(), what: what.into() }
+}
+
+fn about_the_manifest(manifest: &Manifest, shipped: impl Fn(&str) -> Option<String>) -> Vec<Difference> {
+    let mut found = Vec::new();
+    let preset = &manifest.preset;
+    if hash_of(&preset.resolved) != preset.hash {
+        found.push(difference("preset.hash", "is not that of the resolved preset beside it"));
+    }
+    if shipped(&preset.name).is_some_and(|hash| hash != preset.hash) {
+        let what = format!("the preset {} that this tool ships has changed since", preset.name);
+        found.push(difference("preset", what));
+    }
+    let this = env!("CARGO_PKG_VERSION");
+    if manifest.tool.version != this {
+        let what = format!("baked by {} {}, this is {this}", manifest.tool.name, manifest.tool.version);
+        found.push(difference("tool.version", what));
+    }
+    found
+}
+
+/// A file's presence and hash, then what `content` finds in it.
+fn check_file(folder: &Path, file: &str, hash: &str, content: impl Fn(&[u8]) -> Vec<String>) -> Vec<String> {
+    if !Path::new(file).components().all(|c| matches!(c, Component::Normal(_))) {
+        return vec!["the manifest points outside the bake".into()];
+    }
+    match fs::read(folder.join(file)) {
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => vec!["is missing".into()],
+        Err(e) => vec![format!("cannot be read: {e}")],
+        Ok(bytes) => {
+            let same = blake3::hash(&bytes).to_hex().as_str() == hash;
+            let mut whats = content(&bytes);
+            if !same {
+                whats.insert(0, "its bytes are not those that were baked (another BLAKE3)".into());
+            }
+            whats
+        }
+    }
+}
+
+/// Whether an EXR file holds the table that the manifest describes.
+fn check_table(table: &Table, bytes: &[u8]) -> Vec<String> {
+    if Path::new(&table.file).extension().is_none_or(|e| e != "exr") {
+        return Vec::new();
+    }
+    let atlas = match from_exr_bytes(Path::new(&table.file), bytes) {
+        Ok(atlas) => atlas,
+        Err(Error::File { reason, .. }) => return vec![reason],
+        Err(other) => return vec![other.to_string()],
+    };
+    [check_shape(table, &atlas), check_channels(table, &atlas)].concat()
+}
+
+fn check_shape(table: &Table, atlas: &Atlas) -> Vec<String> {
+    let mut whats = Vec::new();
+    let p = &table.packing;
+    let told = [p.slice_width, p.slice_height, p.slices, p.columns, p.rows];
+    let held = [atlas.width, atlas.height, atlas.slices, atlas.columns, atlas.rows()];
+    if told != held {
+        whats.push(format!("slice width, height, slices, columns, rows are {held:?}, not {told:?}"));
+    }
+    if texels(&table.shape) != texels(&held[..3]) {
+        whats.push(format!("shape {:?} is not that of {:?} texels", table.shape, &held[..3]));
+    }
+    let axes: Vec<usize> = table.axes.iter().map(|axis| axis.size).collect();
+    if axes != table.shape {
+        whats.push(format!("axes of sizes {axes:?} do not make the shape {:?}", table.shape));
+    }
+    whats
+}
+
+fn texels(sizes: &[usize]) -> Option<usize> {
+    sizes.iter().try_fold(1usize, |n, &size| n.checked_mul(size))
+}
+
+fn check_channels(table: &Table, atlas: &Atlas) -> Vec<String> {
+    let mut whats = Vec::new();
+    let told: BTreeSet<&str> = table.channels.iter().map(|c| c.name.as_str()).collect();
+    let held: BTreeSet<&str> = atlas.channels.iter().map(|c| c.name.as_str()).collect();
+    if told != held {
+        whats.push(format!("its channels are {held:?}, not {told:?}"));
+    }
+    for info in &table.channels {
+        let Some(channel) = atlas.channel(&info.name) else { continue };
+        let precision = match channel.samples {
+            Samples::Half(_) => Precision::Half,
+            Samples::Float(_) => Precision::Float,
+        };
+        if precision != info.sample {
+            whats.push(format!("channel {} is {precision:?}, not {:?}", info.name, info.sample));
+        }
+        let range = channel.samples.range();
+        if range != info.range {
+            whats.push(format!("channel {} ranges over {range:?}, not {:?}", info.name, info.range));
+        }
+        if let Some(texel) = channel.samples.first_not_finite() {
+            whats.push(format!("channel {}: not a finite number at texel {texel}", info.name));
+        }
+    }
+    whats
+}
+
+/// Files in the folder that the manifest does not list.
+fn unlisted(folder: &Path, manifest: &Manifest) -> Result<Vec<Difference>> {
+    let tables = manifest.tables.iter().map(|t| t.file.as_str());
+    let others = manifest.files.iter().map(|f| f.file.as_str());
+    let listed: BTreeSet<PathBuf> = tables.chain(others).chain([MANIFEST]).map(PathBuf::from).collect();
+    let mut extra = BTreeSet::new();
+    let mut folders = vec![folder.to_path_buf()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(&next).map_err(|e| Error::reading(&next, e))? {
+            let entry = entry.map_err(|e| Error::reading(&next, e))?;
+            let path = entry.path();
+            let inside = path.strip_prefix(folder).unwrap_or(&path).to_path_buf();
+            match entry.file_type() {
+                Ok(kind) if kind.is_dir() => folders.push(path),
+                _ if !listed.contains(&inside) => drop(extra.insert(inside)),
+                _ => {}
+            }
+        }
+    }
+    Ok(extra.iter().map(|p| difference(&p.to_string_lossy(), "is not part of this bake")).collect())
+}

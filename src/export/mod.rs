@@ -1,0 +1,14 @@
+//! Finished tables to files: atlases as EXR, the manifest, a bake folder that replaces the old one whole,
+//! pictures. No physics here.
+
+pub mod atlas;
+pub mod exr;
+mod font;
+pub mod interrupt;
+pub mod manifest;
+pub mod picture;
+pub mod replace;
+pub mod sheet;
+pub mod staging;
+
+pub use atlas::{Atlas, Attribute, Channel, Samples};

@@ -1,0 +1,135 @@
+//! A new folder in the place of an old one, with no moment at which neither stands there where the operating
+//! system allows it (Linux, macOS), and as short a moment as possible elsewhere.
+
+use crate::error::{Error, Result};
+use std::fs;
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+
+/// The file that makes a folder a bake.
+pub const MANIFEST: &str = "bake.json";
+
+/// Other processes may replace the same folder in the same moment; each round lost means one of theirs won.
+const ROUNDS: usize = 1000;
+
+/// Whether a bake may take the place of `target`: there is nothing, or an empty folder, or another bake.
+///
+/// # Errors
+/// `File` if something else stands there; it is left alone.
+pub fn check_replaceable(target: &Path) -> Result<()> {
+    let entries = match fs::read_dir(target) {
+        Ok(entries) => entries,
+        Err(e) if e.kind() == ErrorKind::NotFound => return Ok(()),
+        Err(e) if e.kind() == ErrorKind::NotADirectory => {
+            return Err(Error::file(target, "there is a file where the folder of the bake should be"));
+        }
+        Err(e) => return Err(Error::machine(target, e)),
+    };
+    if target.join(MANIFEST).is_file() || entries.count() == 0 {
+        return Ok(());
+    }
+    Err(Error::file(target, format!("not replaced: the folder is not empty and not a bake (no {MANIFEST})")))
+}
+
+/// Moves the folder `new` to `target`. Returns where the folder that stood there before is now, to be removed
+/// by the caller. `aside` is a free name beside them, used only where `exchange` is off or unsupported.
+pub fn replace(new: &Path, target: &Path, aside: &Path, mut exchange: bool) -> Result<Option<PathBuf>> {
+    for _ in 0..ROUNDS {
+        check_replaceable(target)?;
+        let step = if fs::symlink_metadata(target).is_err() {
+            fs::rename(new, target).map(|()| None)
+        } else if exchange {
+            swap(new, target).map(|()| Some(new.to_path_buf()))
+        } else {
+            move_aside(new, target, aside).map(|()| Some(aside.to_path_buf()))
+        };
+        match step {
+            Ok(old) => return Ok(old),
+            Err(e) if exchange && unsupported(&e) => exchange = false,
+            // Another process put its folder there, or took it away, since we looked.
+            Err(e) if raced(&e) && new.exists() => {}
+            Err(e) => return Err(Error::machine(target, e)),
+        }
+    }
+    Err(Error::machine(target, io::Error::other("other processes keep replacing this folder")))
+}
+
+fn move_aside(new: &Path, target: &Path, aside: &Path) -> io::Result<()> {
+    fs::rename(target, aside)?;
+    fs::rename(new, target).inspect_err(|_| {
+        // Back to where it was; if another bake stands there by now, the older one has no place any more.
+        if fs::rename(aside, target).is_err() && target.exists() {
+            super::interrupt::remove(aside);
+        }
+    })
+}
+
+fn raced(e: &io::Error) -> bool {
+    matches!(e.kind(), ErrorKind::NotFound | ErrorKind::DirectoryNotEmpty | ErrorKind::AlreadyExists)
+}
+
+#[cfg(any(target_os = "linux", target_os = "android", target_vendor = "apple"))]
+fn swap(a: &Path, b: &Path) -> io::Result<()> {
+    use rustix::fs::{CWD, RenameFlags, renameat_with};
+    renameat_with(CWD, a, CWD, b, RenameFlags::EXCHANGE).map_err(io::Error::from)
+}
+
+#[cfg(not(any(target_os = "linux", target_os = "android", target_vendor = "apple")))]
+fn swap(_: &Path, _: &Path) -> io::Result<()> {
+    Err(ErrorKind::Unsupported.into())
+}
+
+/// Filesystems that cannot exchange say so in several ways.
+fn unsupported(e: &io::Error) -> bool {
+    matches!(e.kind(), ErrorKind::Unsupported | ErrorKind::InvalidInput)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bake(folder: &Path, text: &str) {
+        fs::create_dir(folder).unwrap();
+        fs::write(folder.join(MANIFEST), text).unwrap();
+    }
+
+    /// With and without an exchange by the system, the new folder ends in the place of the old one, and the
+    /// old one is handed back whole.
+    #[test]
+    fn the_old_folder_is_handed_back_whole() {
+        for exchange in [true, false] {
+            let dir = tempfile::tempdir().unwrap();
+            let [new, target, aside] = ["new", "target", "aside"].map(|n| dir.path().join(n));
+            bake(&new, "new");
+            bake(&target, "old");
+            let old = replace(&new, &target, &aside, exchange).unwrap().unwrap();
+            assert_eq!(fs::read_to_string(target.join(MANIFEST)).unwrap(), "new");
+            assert_eq!(fs::read_to_string(old.join(MANIFEST)).unwrap(), "old");
+        }
+    }
+
+    /// Where nothing stands, or an empty folder, there is no old bake to hand back or it is empty.
+    #[test]
+    fn an_empty_place_is_taken() {
+        let dir = tempfile::tempdir().unwrap();
+        let [new, target, aside] = ["new", "target", "aside"].map(|n| dir.path().join(n));
+        bake(&new, "one");
+        assert_eq!(replace(&new, &target, &aside, true).unwrap(), None);
+        fs::remove_dir_all(&target).unwrap();
+        fs::create_dir(&target).unwrap();
+        bake(&new, "two");
+        let old = replace(&new, &target, &aside, true).unwrap().unwrap();
+        assert_eq!(fs::read_dir(old).unwrap().count(), 0);
+        assert_eq!(fs::read_to_string(target.join(MANIFEST)).unwrap(), "two");
+    }
+
+    /// A folder with files but no manifest belongs to someone else.
+    #[test]
+    fn what_is_no_bake_is_left_alone() {
+        let dir = tempfile::tempdir().unwrap();
+        fs::write(dir.path().join("thesis.txt"), "years").unwrap();
+        assert_eq!(check_replaceable(dir.path()).unwrap_err().exit_code(), 2);
+        assert_eq!(check_replaceable(&dir.path().join("thesis.txt")).unwrap_err().exit_code(), 2);
+        assert!(check_replaceable(&dir.path().join("nothing")).is_ok());
+    }
+}

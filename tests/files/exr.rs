@@ -1,0 +1,210 @@
+//! EXR files: same bytes always, same values back, and nothing but one line for a damaged one.
+
+use half::f16;
+use proptest::prelude::*;
+use std::path::Path;
+use tyndall::export::exr::{Spectral, from_exr_bytes, spectral_attributes, spectral_channel, to_exr_bytes};
+use tyndall::export::{Atlas, Attribute, Samples};
+
+const FILE: &str = "t.exr";
+
+/// Every finite half, twice over, in 5 × 8 slices of a ragged grid: subnormals, both zeros and the largest.
+fn every_half() -> Atlas {
+    let shape = [31, 67, 40];
+    let finite: Vec<u16> = (0..=u16::MAX).filter(|&b| f16::from_bits(b).is_finite()).collect();
+    let channel = |step: usize| {
+        let bits = (0..shape.iter().product()).map(|k: usize| finite[k * step % finite.len()]);
+        Samples::Half(bits.map(f16::from_bits).collect())
+    };
+    let mut atlas = Atlas::new(FILE, shape).with("R", channel(1)).with("G", channel(7));
+    atlas = atlas.with("B", channel(11)).with("A", channel(13));
+    for (name, value) in [
+        ("mapping", Attribute::Text("u = r / R, größer".into())),
+        ("orders", Attribute::Int(-3)),
+        ("scale", Attribute::Float(0.1)),
+        ("an_attribute_whose_name_is_longer_than_31_bytes", Attribute::Text(String::new())),
+    ] {
+        atlas.attributes.insert(name.into(), value);
+    }
+    atlas
+}
+
+/// A smooth table of both precisions, as the layouts have.
+fn small() -> Atlas {
+    let shape = [5, 4, 3];
+    let wave = |k: usize| libm::sin(k as f64 * 0.1);
+    Atlas::new(FILE, shape)
+        .with("T.550,000000nm", Samples::float((0..60).map(wave)))
+        .with("S0.440,000000nm", Samples::half((0..60).map(wave)))
+}
+
+fn bits(samples: &Samples) -> Vec<u32> {
+    match samples {
+        Samples::Half(v) => v.iter().map(|x| u32::from(x.to_bits())).collect(),
+        Samples::Float(v) => v.iter().map(|x| x.to_bits()).collect(),
+    }
+}
+
+/// Every bit of every sample returns, and so do sizes, order of slices and attributes.
+#[test]
+fn an_atlas_comes_back_as_it_went_in() {
+    for atlas in [every_half(), small()] {
+        let back = from_exr_bytes(Path::new(FILE), &to_exr_bytes(&atlas).unwrap()).unwrap();
+        assert_eq!((back.width, back.height, back.slices), (atlas.width, atlas.height, atlas.slices));
+        assert_eq!((back.columns, &back.attributes), (atlas.columns, &atlas.attributes));
+        assert_eq!(back.channels.len(), atlas.channels.len());
+        for (got, sent) in back.channels.iter().zip(atlas.sorted_channels()) {
+            assert_eq!(got.name, sent.name);
+            assert!(bits(&got.samples) == bits(&sent.samples), "{}", got.name);
+        }
+    }
+}
+
+/// A second reader, the `exr` crate, finds each sample at the place that the packing promises: slice s in
+/// column s mod columns, row s / columns, slice 0 top left, and zeros in places left over.
+#[test]
+fn another_reader_finds_each_sample_at_its_promised_place() {
+    use exr::prelude::*;
+    for atlas in [every_half(), small()] {
+        let bytes = to_exr_bytes(&atlas).unwrap();
+        let image = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
+        let image = image.all_attributes().from_buffered(std::io::Cursor::new(bytes)).unwrap();
+        let layer = &image.layer_data;
+        assert_eq!(layer.encoding.compression, Compression::ZIP16);
+        let picture = [atlas.width * atlas.columns, atlas.height * atlas.rows()];
+        assert_eq!([layer.size.0, layer.size.1], picture);
+        for (found, sent) in layer.channel_data.list.iter().zip(atlas.sorted_channels()) {
+            assert_eq!(found.name.to_string(), sent.name);
+            let values: Vec<f32> = found.sample_data.values_as_f32().collect();
+            for (at, &value) in values.iter().enumerate() {
+                let (px, py) = (at % picture[0], at / picture[0]);
+                let slice = py / atlas.height * atlas.columns + px / atlas.width;
+                let index = (slice * atlas.height + py % atlas.height) * atlas.width + px % atlas.width;
+                let expected = if slice < atlas.slices { sent.samples.get(index) } else { 0.0 };
+                assert_eq!(value.to_bits(), expected.to_bits(), "{} at {px}, {py}", sent.name);
+            }
+        }
+    }
+}
+
+/// Same input, same bytes: over runs and thread counts.
+#[test]
+fn bytes_do_not_depend_on_run_or_threads() {
+    let atlas = every_half();
+    let first = to_exr_bytes(&atlas).unwrap();
+    for threads in [1, 2, 5, 2] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        assert!(pool.install(|| to_exr_bytes(&every_half())).unwrap() == first, "{threads} threads");
+    }
+}
+
+/// The bytes themselves are fixed: a new version of the compressor that changed them would change every bake
+/// of the same input, and has to be a decision. The hash is of this test's own first output.
+#[test]
+fn bytes_are_those_of_earlier_versions() {
+    let hash = blake3::hash(&to_exr_bytes(&small()).unwrap()).to_hex().to_string();
+    assert_eq!(hash, "8813b8a7159ef0d676e21789e93b139ecffff995f9bdac4d953c2b40076bcf63");
+}
+
+/// Spectral channels are listed alphabetically, which is by wavelength as long as all have three digits.
+#[test]
+fn spectral_channels_come_back_by_wavelength() {
+    let mut atlas = Atlas::new(FILE, [2, 2, 1]);
+    for nm in [700.0, 380.0, 550.5] {
+        atlas = atlas.with(spectral_channel(Spectral::Radiance, nm), Samples::float([nm; 4]));
+    }
+    atlas.attributes = spectral_attributes();
+    let back = from_exr_bytes(Path::new(FILE), &to_exr_bytes(&atlas).unwrap()).unwrap();
+    let names: Vec<&str> = back.channels.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names, ["S0.380,000000nm", "S0.550,500000nm", "S0.700,000000nm"]);
+    assert_eq!(back.channels.iter().map(|c| c.samples.get(0)).collect::<Vec<_>>(), [380.0, 550.5, 700.0]);
+    assert_eq!(back.attributes["emissiveUnits"], Attribute::Text("W.m^-2.sr^-1".into()));
+}
+
+/// The refusal names table, channel and texel, so that the solver's fault can be found.
+#[test]
+fn what_is_not_finite_is_refused_with_its_place() {
+    let mut values = [0.5; 60];
+    values[2 * 20 + 3 * 5 + 4] = f64::NAN;
+    let error =
+        to_exr_bytes(&Atlas::new("scattering", [5, 4, 3]).with("R", Samples::half(values))).unwrap_err();
+    assert_eq!(error.exit_code(), 3);
+    assert!(error.to_string().contains("scattering"), "{error}");
+    assert!(error.to_string().contains("channel R, x 4, y 3, slice 2"), "{error}");
+}
+
+/// Sizes and names that a file cannot hold are the caller's mistake, not a panic.
+#[test]
+fn atlases_that_no_file_can_hold_are_refused() {
+    let ok = || Samples::half([1.0; 8]);
+    let mut wide = Atlas::new(FILE, [2, 2, 2]).with("R", ok());
+    wide.columns = 3;
+    let none = Atlas::new(FILE, [2, 2, 2]);
+    let twice = Atlas::new(FILE, [2, 2, 2]).with("R", ok()).with("R", ok());
+    let short = Atlas::new(FILE, [2, 2, 3]).with("R", ok());
+    let unnamed = Atlas::new(FILE, [2, 2, 2]).with("", ok());
+    let flat = Atlas::new(FILE, [0, 2, 2]).with("R", ok());
+    for atlas in [wide, none, twice, short, unnamed, flat] {
+        assert_eq!(to_exr_bytes(&atlas).unwrap_err().exit_code(), 2);
+    }
+}
+
+/// Whatever becomes of the bytes, the answer is an atlas or one line that names the file.
+fn is_an_atlas_or_one_line(bytes: &[u8]) -> bool {
+    match from_exr_bytes(Path::new(FILE), bytes) {
+        Ok(_) => true,
+        Err(e) => {
+            let text = e.to_string();
+            assert!(text.starts_with(FILE) && !text.contains('\n') && e.exit_code() == 2, "{text}");
+            false
+        }
+    }
+}
+
+/// A file cut anywhere has lost a tile or part of its header: never an atlas.
+#[test]
+fn a_truncated_file_is_refused_at_every_length() {
+    let bytes = to_exr_bytes(&small()).unwrap();
+    assert!(is_an_atlas_or_one_line(&bytes));
+    for length in 0..bytes.len() {
+        assert!(!is_an_atlas_or_one_line(&bytes[..length]), "{length} of {} bytes", bytes.len());
+    }
+}
+
+/// Files of other kinds say why they are not read: a striped EXR, an uncompressed one, a PNG, nothing.
+#[test]
+fn foreign_files_are_refused_with_the_reason() {
+    use exr::prelude::*;
+    let encode = |encoding: Encoding| {
+        let channels = SpecificChannels::rgba(|p: Vec2<usize>| (p.x() as f32, 0.5f32, 0.5f32, 1.0f32));
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        let layer = Layer::new((8, 8), LayerAttributes::named("x"), encoding, channels);
+        Image::from_layer(layer).write().to_buffered(&mut bytes).unwrap();
+        bytes.into_inner()
+    };
+    let striped = encode(Encoding::UNCOMPRESSED);
+    let tiled = encode(Encoding { blocks: Blocks::Tiles(Vec2(8, 8)), ..Encoding::UNCOMPRESSED });
+    for (bytes, reason) in [
+        (striped, "single part in tiles"),
+        (tiled, "sliceWidth"),
+        (b"\x89PNG\r\n\x1a\n and more".to_vec(), "not an EXR file"),
+        (Vec::new(), "not an EXR file"),
+    ] {
+        let error = from_exr_bytes(Path::new(FILE), &bytes).unwrap_err().to_string();
+        assert!(error.contains(reason), "{error}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+    /// Flipped bits anywhere, also several: no panic, no absurd allocation.
+    #[test]
+    fn damaged_bytes_never_panic(flips in proptest::collection::vec((any::<prop::sample::Index>(), 1u8..), 1..4)) {
+        let mut bytes = to_exr_bytes(&small()).unwrap();
+        for (place, flip) in flips {
+            let at = place.index(bytes.len());
+            bytes[at] ^= flip;
+        }
+        is_an_atlas_or_one_line(&bytes);
+    }
+}
