@@ -1,6 +1,6 @@
 //! A dense array of any number of axes, filled in parallel and read with multilinear interpolation.
 
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, WIDTH};
 use rayon::prelude::*;
 
 /// A place between two neighbouring texels of one axis: index of the lower one and the fraction of the way
@@ -46,7 +46,10 @@ impl Element for Lanes {
     const ZERO: Self = Lanes::ZERO;
     #[inline(always)]
     fn add_scaled(&mut self, value: &Self, weight: f64) {
-        *self += *value * weight as f32;
+        let weight = weight as f32;
+        for i in 0..WIDTH {
+            self.0[i] += value.0[i] * weight;
+        }
     }
 }
 
@@ -116,21 +119,34 @@ impl<T: Element, const D: usize> Array<T, D> {
         &self.values[self.offset(index)]
     }
 
-    /// Multilinear interpolation between the 2^D texels around a place. Neighbours of weight 0 are not read,
-    /// so a texel centre answers its own value to the bit.
+    /// Multilinear interpolation between the 2^D texels around a place, D ≤ 4. Neighbours of weight 0 are not
+    /// read, so a texel centre answers its own value to the bit.
     #[inline(always)]
     pub fn interpolate(&self, place: &[Texel; D]) -> T {
+        const { assert!(D <= 4) }
+        // As many axes as there can be; those that are not there have one texel.
+        let (mut sides, mut base, mut stride) = ([[(0, 1.0), (0, 0.0)]; 4], 0, 1);
+        for axis in (0..D).rev() {
+            let (index, fraction) = place[axis];
+            base += index * stride;
+            sides[axis] = [(0, 1.0 - fraction), (stride, fraction)];
+            stride *= self.shape[axis];
+        }
         let mut sum = T::ZERO;
-        for corner in 0..1_usize << D {
-            let (mut weight, mut offset) = (1.0, 0);
-            for axis in 0..D {
-                let (index, fraction) = place[axis];
-                let upper = (corner >> (D - 1 - axis)) & 1;
-                weight *= if upper == 1 { fraction } else { 1.0 - fraction };
-                offset = offset * self.shape[axis] + index + upper;
-            }
-            if weight != 0.0 {
-                sum.add_scaled(&self.values[offset], weight);
+        for (offset_0, weight_0) in sides[0] {
+            for (offset_1, weight_1) in sides[1] {
+                let (offset, weight) = (base + offset_0 + offset_1, weight_0 * weight_1);
+                if weight == 0.0 {
+                    continue;
+                }
+                for (offset_2, weight_2) in sides[2] {
+                    for (offset_3, weight_3) in sides[3] {
+                        let weight = weight * (weight_2 * weight_3);
+                        if weight != 0.0 {
+                            sum.add_scaled(&self.values[offset + offset_2 + offset_3], weight);
+                        }
+                    }
+                }
             }
         }
         sum

@@ -11,8 +11,11 @@
 
 use super::array::{Texel, texel};
 
-/// Steepness of the sun axis, the paper's 2.8.
-const SUN_STEEPNESS: f64 = 2.8;
+/// The exponent of the sun axis over its whole length: 2.8 cos δ + 0.8 at cos δ = 1. A longer axis stretches
+/// the paper's nodes evenly; with 2.8 kept, the last step below the zenith would widen to half the day.
+const SUN_EXPONENT: f64 = 3.6;
+/// 1 − e^−3.6, what W is divided by.
+const SUN_RANGE: f64 = 0.972_676_277_552_707_1;
 /// Lower end of the paper's sun axis: W = 0 where 2.8 cos δ + 0.8 = 0.
 const PAPER_MU_S_MIN: f64 = -0.8 / 2.8;
 /// How far the axis reaches below the last light at the top: half a degree at the horizon, so that the dark
@@ -26,8 +29,8 @@ pub struct Elek2010 {
     /// Height of the shell, m.
     height: f64,
     mu_s_min: f64,
-    /// 1 − e^(−2.8 (1 − mu_s_min)): what the sun axis is divided by.
-    sun_range: f64,
+    /// Steepness of the sun axis: 2.8 (the paper's) where the axis has the paper's length.
+    sun_steepness: f64,
     size: [usize; 4],
 }
 
@@ -57,8 +60,8 @@ impl Elek2010 {
         let height = top_radius - ground_radius;
         let last_light = -(height * (top_radius + ground_radius)).sqrt() / top_radius;
         let mu_s_min = PAPER_MU_S_MIN.min(last_light - MU_S_MARGIN).max(-1.0);
-        let sun_range = -libm::expm1(-SUN_STEEPNESS * (1.0 - mu_s_min));
-        Some(Elek2010 { ground_radius, height, mu_s_min, sun_range, size })
+        let sun_steepness = SUN_EXPONENT / (1.0 - mu_s_min);
+        Some(Elek2010 { ground_radius, height, mu_s_min, sun_steepness, size })
     }
 
     pub fn size(&self) -> [usize; 4] {
@@ -185,14 +188,14 @@ impl Elek2010 {
         ((horizon + above_horizon).clamp(-1.0, 1.0), hits_ground)
     }
 
-    // ---- sun: W = (1 − e^(−2.8 (mu_s − mu_s_min))) / (1 − e^(−2.8 (1 − mu_s_min))) -----------------------
+    // ---- sun: W = (1 − e^(−a (mu_s − mu_s_min))) / (1 − e^−3.6), a = 3.6 / (1 − mu_s_min) -----------------
 
     /// W(mu_s) in 0..1; none below the axis, where it is dark. With the paper's mu_s_min = −0.8/2.8 this is
     /// its (1 − e^(−2.8 mu_s − 0.8)) / (1 − e^−3.6).
     #[inline]
     pub fn sun_coordinate(&self, mu_s: f64) -> Option<f64> {
-        let from_dark = || -libm::expm1(-SUN_STEEPNESS * (mu_s - self.mu_s_min));
-        (mu_s >= self.mu_s_min).then(|| from_dark() / self.sun_range)
+        let above = self.sun_steepness * (mu_s - self.mu_s_min);
+        (mu_s >= self.mu_s_min).then(|| (1.0 - libm::exp(-above)) / SUN_RANGE)
     }
 
     /// Cosine of the sun's zenith angle of texel `k`: mu_s_min for the first, 1 for the last.
@@ -201,7 +204,7 @@ impl Elek2010 {
             return 1.0;
         }
         let w = k as f64 / (self.size[2] - 1) as f64;
-        self.mu_s_min - libm::log1p(-w * self.sun_range) / SUN_STEEPNESS
+        self.mu_s_min - libm::log(1.0 - w * SUN_RANGE) / self.sun_steepness
     }
 
     // ---- azimuth: R = (1 + cos φ) / 2 --------------------------------------------------------------------
@@ -280,10 +283,10 @@ impl Elek2010 {
             AxisFormula {
                 name: "sun",
                 size: self.size[2],
-                coordinate: "W = (1 - exp(-a (mu_s - mu_s_min))) / (1 - exp(-a (1 - mu_s_min))); the table \
-                    is 0 for mu_s < mu_s_min",
-                inverse: "mu_s = mu_s_min - ln(1 - W (1 - exp(-a (1 - mu_s_min)))) / a",
-                constants: vec![("a", SUN_STEEPNESS), ("mu_s_min", self.mu_s_min)],
+                coordinate: "W = (1 - exp(-a (mu_s - mu_s_min))) / (1 - exp(-3.6)), a = 3.6 / (1 - mu_s_min); \
+                    the table is 0 for mu_s < mu_s_min",
+                inverse: "mu_s = mu_s_min - ln(1 - W (1 - exp(-3.6))) / a",
+                constants: vec![("a", self.sun_steepness), ("mu_s_min", self.mu_s_min)],
             },
             AxisFormula {
                 name: "azimuth",
