@@ -22,6 +22,21 @@ const PAPER_MU_S_MIN: f64 = -0.8 / 2.8;
 /// edge lies inside the table for any shell.
 const MU_S_MARGIN: f64 = 0.01;
 
+/// How texels are spread over the cosine of the sun's zenith angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SunCurve {
+    /// The paper's exponential W.
+    Paper,
+    /// x = u / (|u| + width) with u = mu_s + shift, even in x: closest where the sun is a little below the
+    /// horizon and light fades fastest, and still fine by day.
+    Rational { shift: f64, width: f64 },
+}
+
+fn rational(mu_s: f64, shift: f64, width: f64) -> f64 {
+    let u = mu_s + shift;
+    u / (u.abs() + width)
+}
+
 /// The mapping between (altitude, mu, mu_s, azimuth) and texels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Elek2010 {
@@ -31,6 +46,7 @@ pub struct Elek2010 {
     mu_s_min: f64,
     /// Steepness of the sun axis: 2.8 (the paper's) where the axis has the paper's length.
     sun_steepness: f64,
+    curve: SunCurve,
     size: [usize; 4],
 }
 
@@ -61,7 +77,23 @@ impl Elek2010 {
         let last_light = -(height * (top_radius + ground_radius)).sqrt() / top_radius;
         let mu_s_min = PAPER_MU_S_MIN.min(last_light - MU_S_MARGIN).max(-1.0);
         let sun_steepness = SUN_EXPONENT / (1.0 - mu_s_min);
-        Some(Elek2010 { ground_radius, height, mu_s_min, sun_steepness, size })
+        Some(Elek2010 { ground_radius, height, mu_s_min, sun_steepness, curve: SunCurve::Paper, size })
+    }
+
+    /// The same mapping with another sun axis.
+    pub fn with_sun_curve(mut self, curve: SunCurve) -> Self {
+        self.curve = curve;
+        self
+    }
+
+    /// The same shell and curves for a table of other size; conditions as for [`Self::new`].
+    pub fn resized(&self, size: [usize; 4]) -> Option<Self> {
+        Elek2010::new(self.ground_radius, self.ground_radius + self.height, size).map(|m| m.with_sun_curve(self.curve))
+    }
+
+    /// Radius of the ground and of the top, m.
+    pub fn radii(&self) -> [f64; 2] {
+        [self.ground_radius, self.ground_radius + self.height]
     }
 
     pub fn size(&self) -> [usize; 4] {
@@ -194,6 +226,11 @@ impl Elek2010 {
     /// its (1 − e^(−2.8 mu_s − 0.8)) / (1 − e^−3.6).
     #[inline]
     pub fn sun_coordinate(&self, mu_s: f64) -> Option<f64> {
+        if let SunCurve::Rational { shift, width } = self.curve {
+            let x = |mu: f64| rational(mu, shift, width);
+            let low = x(self.mu_s_min);
+            return (mu_s >= self.mu_s_min).then(|| (x(mu_s) - low) / (x(1.0) - low));
+        }
         let above = self.sun_steepness * (mu_s - self.mu_s_min);
         (mu_s >= self.mu_s_min).then(|| (1.0 - libm::exp(-above)) / SUN_RANGE)
     }
@@ -204,6 +241,11 @@ impl Elek2010 {
             return 1.0;
         }
         let w = k as f64 / (self.size[2] - 1) as f64;
+        if let SunCurve::Rational { shift, width } = self.curve {
+            let low = rational(self.mu_s_min, shift, width);
+            let x = low + w * (rational(1.0, shift, width) - low);
+            return x * width / (1.0 - x.abs()) - shift;
+        }
         self.mu_s_min - libm::log(1.0 - w * SUN_RANGE) / self.sun_steepness
     }
 
@@ -280,14 +322,7 @@ impl Elek2010 {
                     half: mu = (Z2^2 - Z1^2 - d^2) / (2 r d)",
                 constants: radii,
             },
-            AxisFormula {
-                name: "sun",
-                size: self.size[2],
-                coordinate: "W = (1 - exp(-a (mu_s - mu_s_min))) / (1 - exp(-3.6)), a = 3.6 / (1 - mu_s_min); \
-                    the table is 0 for mu_s < mu_s_min",
-                inverse: "mu_s = mu_s_min - ln(1 - W (1 - exp(-3.6))) / a",
-                constants: vec![("a", self.sun_steepness), ("mu_s_min", self.mu_s_min)],
-            },
+            self.sun_axis(),
             AxisFormula {
                 name: "azimuth",
                 size: self.size[3],
@@ -296,5 +331,24 @@ impl Elek2010 {
                 constants: Vec::new(),
             },
         ]
+    }
+
+    fn sun_axis(&self) -> AxisFormula {
+        let low = ("mu_s_min", self.mu_s_min);
+        let (coordinate, inverse, constants) = match self.curve {
+            SunCurve::Paper => (
+                "W = (1 - exp(-a (mu_s - mu_s_min))) / (1 - exp(-3.6)), a = 3.6 / (1 - mu_s_min); the table is \
+                    0 for mu_s < mu_s_min",
+                "mu_s = mu_s_min - ln(1 - W (1 - exp(-3.6))) / a",
+                vec![("a", self.sun_steepness), low],
+            ),
+            SunCurve::Rational { shift, width } => (
+                "x(mu_s) = u / (|u| + width), u = mu_s + shift; W = (x(mu_s) - x(mu_s_min)) / (x(1) - \
+                    x(mu_s_min)); the table is 0 for mu_s < mu_s_min",
+                "x = x(mu_s_min) + W (x(1) - x(mu_s_min)); mu_s = x width / (1 - |x|) - shift",
+                vec![("shift", shift), ("width", width), low],
+            ),
+        };
+        AxisFormula { name: "sun", size: self.size[2], coordinate, inverse, constants }
     }
 }

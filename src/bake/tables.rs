@@ -1,0 +1,114 @@
+//! A finished table: its samples in file order and what the manifest says of it.
+
+use crate::export::atlas::{Atlas, Samples};
+use crate::export::manifest::{Axis, ChannelInfo, Encoding, Origin, Packing, Precision, Table};
+use crate::table::{AxisFormula, Elek2010};
+
+/// A table of up to four channels, texels in the order x, y, z, w with x fastest (z and w share the slices).
+pub struct Baked {
+    pub layout: String,
+    pub name: String,
+    pub axes: Vec<Axis>,
+    pub channels: Vec<Channel>,
+    pub encoding: Encoding,
+    pub texels: Vec<[f32; 4]>,
+}
+
+/// Name in the file, quantity and unit; an encoding where it differs from the table's.
+#[derive(Clone)]
+pub struct Channel {
+    pub name: String,
+    pub quantity: String,
+    pub unit: String,
+    pub encoding: Option<Encoding>,
+}
+
+impl Channel {
+    pub fn new(name: &str, quantity: impl Into<String>, unit: &str) -> Self {
+        Channel { name: name.into(), quantity: quantity.into(), unit: unit.into(), encoding: None }
+    }
+}
+
+impl Baked {
+    /// The picture to store, in half floats.
+    pub fn atlas(&self) -> Atlas {
+        let size = |k: usize| self.axes.get(k).map_or(1, |a| a.size);
+        let (width, height, slices) = (size(0), size(1), size(2) * size(3));
+        let name = format!("{}/{}", self.layout, self.name);
+        let mut atlas = Atlas::new(name, [width, height, slices]);
+        for (k, c) in self.channels.iter().enumerate() {
+            atlas = atlas.with(c.name.clone(), Samples::half(self.texels.iter().map(|t| f64::from(t[k]))));
+        }
+        atlas
+    }
+
+    /// What the manifest says, once the file is written.
+    pub fn entry(&self, atlas: &Atlas, blake3: String) -> Table {
+        let channels = self
+            .channels
+            .iter()
+            .zip(&atlas.channels)
+            .map(|(c, stored)| ChannelInfo {
+                name: c.name.clone(),
+                quantity: c.quantity.clone(),
+                unit: c.unit.clone(),
+                sample: Precision::Half,
+                range: stored.samples.range(),
+                encoding: c.encoding.clone(),
+            })
+            .collect();
+        Table {
+            layout: self.layout.clone(),
+            name: self.name.clone(),
+            file: format!("{}/{}.exr", self.layout, self.name),
+            blake3,
+            shape: self.axes.iter().map(|a| a.size).collect(),
+            axes: self.axes.clone(),
+            packing: Packing {
+                slice_width: atlas.width,
+                slice_height: atlas.height,
+                slices: atlas.slices,
+                columns: atlas.columns,
+                rows: atlas.rows(),
+                slice_order: "row-major".into(),
+                origin: Origin::TopLeft,
+            },
+            encoding: self.encoding.clone(),
+            channels,
+        }
+    }
+}
+
+/// A manifest's axis from a mapping's.
+pub fn axis(formula: &AxisFormula) -> Axis {
+    Axis {
+        name: formula.name.into(),
+        size: formula.size,
+        formula: format!("{}. Inverse: {}", formula.coordinate, formula.inverse),
+        constants: formula.constants.iter().map(|(k, v)| (k.to_string(), *v)).collect(),
+        unit: if formula.name == "altitude" { "m".into() } else { "1".into() },
+    }
+}
+
+/// Axes of a scattering table: altitude, view, sun, azimuth.
+pub fn axes_of(mapping: &Elek2010) -> Vec<Axis> {
+    mapping.axes().iter().map(axis).collect()
+}
+
+/// Moves texels from the order in which rays are integrated, `[altitude][view][sun][azimuth]`, to that of the
+/// file, altitude fastest, then view, sun and azimuth.
+pub fn file_order(rays: Vec<[f32; 4]>, size: [usize; 4]) -> Vec<[f32; 4]> {
+    use rayon::prelude::*;
+    let [altitudes, views, suns, azimuths] = size;
+    let mut out = vec![[0.0; 4]; rays.len()];
+    out.par_chunks_mut(altitudes * views).enumerate().for_each(|(slice, texels)| {
+        let (sun, azimuth) = (slice % suns, slice / suns);
+        for view in 0..views {
+            for altitude in 0..altitudes {
+                let from = ((altitude * views + view) * suns + sun) * azimuths + azimuth;
+                texels[view * altitudes + altitude] = rays[from];
+            }
+        }
+    });
+    out
+}
