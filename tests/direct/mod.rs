@@ -101,14 +101,14 @@ impl Planet {
         if hits {
             let at = ahead(p, v, length);
             let mu_s = (dot(at, sun) / self.ground).max(0.0);
-            ground = self.albedo / PI * mu_s * self.sunlight(at, sun, 400) * libm::exp(-depth);
+            ground = self.albedo / PI * mu_s * self.sunlight(at, sun, 2 * 120.min(steps)) * libm::exp(-depth);
         }
         (sum, ground)
     }
 
     /// Order 2 by gas and aerosol along a ray: all light of order 1, the ground's too, scattered once more.
     pub fn second(&self, p: Vector, v: Vector, sun: Vector) -> [f64; 2] {
-        const STEPS: usize = 40;
+        const STEPS: usize = 32;
         let (length, _) = self.end(p, v);
         let (step, mut depth, mut sum) = (length / STEPS as f64, 0.0, [0.0; 2]);
         for k in 0..STEPS {
@@ -149,8 +149,8 @@ impl Planet {
 
     /// Calls with directions and solid angles around a point, the zenith angle split at its horizon.
     fn sphere(&self, p: Vector, mut each: impl FnMut(Vector, f64)) {
-        const RINGS: usize = 14;
-        const AZIMUTHS: usize = 20;
+        const RINGS: usize = 12;
+        const AZIMUTHS: usize = 16;
         let r = dot(p, p).sqrt();
         let up = p.map(|x| x / r);
         // Any two horizontal axes: up crossed with y, and the third.
@@ -181,7 +181,7 @@ impl Planet {
 
     /// Power of the direct beam that passes the planet through its air, per unit irradiance, m².
     pub fn beam_past_the_limb(&self) -> f64 {
-        const STEPS: usize = 400;
+        const STEPS: usize = 320;
         let step = (self.top - self.ground) / STEPS as f64;
         (0..STEPS)
             .map(|k| {
