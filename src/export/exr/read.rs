@@ -163,11 +163,13 @@ fn channel_types(list: &[u8]) -> Read<Vec<(String, usize)>> {
         let bytes = match cursor.int()? {
             header::HALF => 2,
             header::FLOAT => 4,
-            other => return Err(format!("channel {name} has sample type {other}; wanted is half or float")),
+            other => {
+                return Err(format!("channel {name:?} has sample type {other}; wanted is half or float"));
+            }
         };
         cursor.take(4)?;
         if [cursor.int()?, cursor.int()?] != [1, 1] {
-            return Err(format!("channel {name} is subsampled"));
+            return Err(format!("channel {name:?} is subsampled"));
         }
         if channels.last().is_some_and(|(last, _)| *last >= name) {
             return Err("damaged header: channels are not in order".into());
