@@ -1,6 +1,7 @@
 //! Files as another program meets them: EXR bytes, and folders that are replaced whole or not at all.
 
 mod files {
+    mod disk;
     mod exr;
     mod staging;
     mod verify;

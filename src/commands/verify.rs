@@ -88,7 +88,7 @@ fn about_the_manifest(manifest: &Manifest, shipped: impl Fn(&str) -> Option<Stri
         found.push(difference("preset.hash", "is not that of the resolved preset beside it"));
     }
     if shipped(&preset.name).is_some_and(|hash| hash != preset.hash) {
-        let what = format!("the preset {} that this tool ships has changed since", preset.name);
+        let what = format!("the preset {:?} that this tool ships has changed since", preset.name);
         found.push(difference("preset", what));
     }
     let this = env!("CARGO_PKG_VERSION");
@@ -167,14 +167,14 @@ fn check_channels(table: &Table, atlas: &Atlas) -> Vec<String> {
             Samples::Float(_) => Precision::Float,
         };
         if precision != info.sample {
-            whats.push(format!("channel {} is {precision:?}, not {:?}", info.name, info.sample));
+            whats.push(format!("channel {:?} is {precision:?}, not {:?}", info.name, info.sample));
         }
         let range = channel.samples.range();
         if range != info.range {
-            whats.push(format!("channel {} ranges over {range:?}, not {:?}", info.name, info.range));
+            whats.push(format!("channel {:?} ranges over {range:?}, not {:?}", info.name, info.range));
         }
         if let Some(texel) = channel.samples.first_not_finite() {
-            whats.push(format!("channel {}: not a finite number at texel {texel}", info.name));
+            whats.push(format!("channel {:?}: not a finite number at texel {texel}", info.name));
         }
     }
     whats

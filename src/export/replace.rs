@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// The file that makes a folder a bake.
 pub const MANIFEST: &str = "bake.json";
@@ -17,18 +18,28 @@ const ROUNDS: usize = 1000;
 /// # Errors
 /// `File` if something else stands there; it is left alone.
 pub fn check_replaceable(target: &Path) -> Result<()> {
-    let entries = match fs::read_dir(target) {
-        Ok(entries) => entries,
-        Err(e) if e.kind() == ErrorKind::NotFound => return Ok(()),
-        Err(e) if e.kind() == ErrorKind::NotADirectory => {
-            return Err(Error::file(target, "there is a file where the folder of the bake should be"));
+    // A folder that another process moves away and removes in this moment looks strange half-way: only what
+    // looks the same for a while is refused.
+    for _ in 0..LOOKS {
+        if looks_replaceable(target)? {
+            return Ok(());
         }
-        Err(e) => return Err(Error::machine(target, e)),
-    };
-    if target.join(MANIFEST).is_file() || entries.count() == 0 {
-        return Ok(());
+        std::thread::sleep(Duration::from_millis(2));
     }
     Err(Error::file(target, format!("not replaced: the folder is not empty and not a bake (no {MANIFEST})")))
+}
+
+const LOOKS: usize = 10;
+
+fn looks_replaceable(target: &Path) -> Result<bool> {
+    match fs::read_dir(target) {
+        Ok(mut entries) => Ok(target.join(MANIFEST).is_file() || entries.next().is_none()),
+        Err(e) if e.kind() == ErrorKind::NotFound => Ok(true),
+        Err(e) if e.kind() == ErrorKind::NotADirectory => {
+            Err(Error::file(target, "there is a file where the folder of the bake should be"))
+        }
+        Err(e) => Err(Error::machine(target, e)),
+    }
 }
 
 /// Moves the folder `new` to `target`. Returns where the folder that stood there before is now, to be removed
@@ -106,6 +117,30 @@ mod tests {
             assert_eq!(fs::read_to_string(target.join(MANIFEST)).unwrap(), "new");
             assert_eq!(fs::read_to_string(old.join(MANIFEST)).unwrap(), "old");
         }
+    }
+
+    /// Four threads replace one folder thirty times each, by moving the old one aside: every call ends, and
+    /// what stands there at the end, and each old folder handed back, is whole.
+    #[test]
+    fn racing_without_an_exchange_loses_no_folder_half_way() {
+        let dir = tempfile::tempdir().unwrap();
+        let target = &dir.path().join("target");
+        std::thread::scope(|scope| {
+            for worker in 0..4 {
+                let [new, aside] = ["new", "aside"].map(|n| dir.path().join(format!("{n}{worker}")));
+                scope.spawn(move || {
+                    for round in 0..30 {
+                        bake(&new, &format!("{worker} {round}"));
+                        if let Some(old) = replace(&new, target, &aside, false).unwrap() {
+                            assert!(old.join(MANIFEST).is_file());
+                            fs::remove_dir_all(old).unwrap();
+                        }
+                    }
+                });
+            }
+        });
+        assert!(fs::read_to_string(target.join(MANIFEST)).unwrap().ends_with(" 29"));
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
     }
 
     /// Where nothing stands, or an empty folder, there is no old bake to hand back or it is empty.

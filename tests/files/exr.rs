@@ -195,9 +195,21 @@ fn foreign_files_are_refused_with_the_reason() {
     }
 }
 
+/// A name in a damaged header may hold a line break; the message holds none.
+#[test]
+fn a_name_with_a_line_break_stays_on_one_line() {
+    let mut bytes = to_exr_bytes(&small()).unwrap();
+    let name = b"T.550,000000nm\0\x02";
+    let at = bytes.windows(name.len()).position(|w| w == name).unwrap();
+    bytes[at + 1] = b'\n';
+    bytes[at + name.len() - 1] = 0;
+    assert!(!is_an_atlas_or_one_line(&bytes));
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
-    /// Flipped bits anywhere, also several: no panic, no absurd allocation.
+    /// Flipped bits anywhere, also several: no panic, no absurd allocation, and no name from the damaged
+    /// header that would break the line of the message.
     #[test]
     fn damaged_bytes_never_panic(flips in proptest::collection::vec((any::<prop::sample::Index>(), 1u8..), 1..4)) {
         let mut bytes = to_exr_bytes(&small()).unwrap();

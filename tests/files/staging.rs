@@ -9,7 +9,7 @@ use tyndall::export::interrupt::handle_interrupts;
 use tyndall::export::staging::Staging;
 
 /// A bake of two files, both holding `text`.
-fn bake(target: &Path, text: &str) -> tyndall::Result<()> {
+pub fn bake(target: &Path, text: &str) -> tyndall::Result<()> {
     let staging = Staging::begin(target)?;
     staging.write("compact/x.exr", text.as_bytes())?;
     staging.write("bake.json", text.as_bytes())?;
@@ -17,7 +17,7 @@ fn bake(target: &Path, text: &str) -> tyndall::Result<()> {
 }
 
 /// The text of a whole bake; panics if its two files disagree.
-fn text_of(target: &Path) -> String {
+pub fn text_of(target: &Path) -> String {
     let [manifest, table] =
         ["bake.json", "compact/x.exr"].map(|f| fs::read_to_string(target.join(f)).unwrap());
     assert_eq!(manifest, table, "a mixture of two bakes");
@@ -25,7 +25,7 @@ fn text_of(target: &Path) -> String {
 }
 
 /// The names in a folder, hidden ones too.
-fn names(folder: &Path) -> Vec<String> {
+pub fn names(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> =
         fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
@@ -207,57 +207,4 @@ fn a_bake_left_aside_is_put_back() {
     fs::rename(&target, dir.path().join(".mars.old-0123456789abcdef")).unwrap();
     drop(Staging::begin(&target).unwrap());
     assert_eq!((text_of(&target), names(dir.path())), ("old".into(), vec!["mars".into()]));
-}
-
-/// `mount`, for the two tests that need a filesystem of their own; `None` (and the reason printed) where
-/// this user may not mount.
-struct Mounted(TempDir);
-
-impl Mounted {
-    fn new(options: &str) -> Option<Self> {
-        let dir = tempdir().unwrap();
-        let mut mount = Command::new("mount");
-        mount.args(["-t", "tmpfs", "-o", options, "tmpfs"]).arg(dir.path());
-        match mount.output() {
-            Ok(output) if output.status.success() => Some(Mounted(dir)),
-            Ok(output) => skipped(String::from_utf8_lossy(&output.stderr).trim()),
-            Err(e) => skipped(&e.to_string()),
-        }
-    }
-}
-
-fn skipped(reason: &str) -> Option<Mounted> {
-    eprintln!("skipped: a small filesystem cannot be mounted here: {reason}");
-    None
-}
-
-impl Drop for Mounted {
-    fn drop(&mut self) {
-        let _ = Command::new("umount").arg(self.0.path()).status();
-    }
-}
-
-/// 64 KiB hold the old bake, not the new one.
-#[test]
-fn a_full_disk_is_one_line_and_leaves_the_old_bake() {
-    let Some(disk) = Mounted::new("size=64k") else { return };
-    let target = disk.0.path().join("mars");
-    bake(&target, "old").unwrap();
-    let error = bake(&target, &"x".repeat(1 << 20)).unwrap_err();
-    assert_eq!((error.exit_code(), error.to_string().lines().count()), (3, 1), "{error}");
-    assert!(error.to_string().contains("mars/compact/x.exr: No space left"), "{error}");
-    assert_eq!((text_of(&target), names(disk.0.path())), ("old".into(), vec!["mars".into()]));
-}
-
-/// Root may write anywhere but on a filesystem that is mounted read-only.
-#[test]
-fn an_unwritable_folder_is_one_line_and_leaves_the_old_bake() {
-    let Some(disk) = Mounted::new("size=64k") else { return };
-    let target = disk.0.path().join("mars");
-    bake(&target, "old").unwrap();
-    let remount = Command::new("mount").args(["-o", "remount,ro"]).arg(disk.0.path()).status().unwrap();
-    assert!(remount.success());
-    let error = bake(&target, "new").unwrap_err();
-    assert_eq!((error.exit_code(), error.to_string().lines().count()), (3, 1), "{error}");
-    assert_eq!((text_of(&target), names(disk.0.path())), ("old".into(), vec!["mars".into()]));
 }

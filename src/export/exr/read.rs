@@ -125,7 +125,9 @@ fn empty_atlas(name: String, header: &Header) -> Read<Atlas> {
     let attributes = custom_attributes(header);
     let atlas = Atlas { name, width, height, slices, columns, channels: Vec::new(), attributes };
     let window: [i32; 4] = ints(header, "dataWindow", "box2i")?;
-    let picture = [0, 0, (width * columns) as i64 - 1, (height * rows) as i64 - 1];
+    // Each factor comes from 31 bits.
+    let last = |a: usize, b: usize| a as i64 * b as i64 - 1;
+    let picture = [0, 0, last(width, columns), last(height, rows)];
     let tile: [i32; 2] = ints(header, "tiles", "tiledesc")?;
     if columns > slices || atlas.rows() != rows || window.map(i64::from) != picture {
         return Err("the picture's size and its packing of slices disagree".into());
@@ -161,11 +163,13 @@ fn channel_types(list: &[u8]) -> Read<Vec<(String, usize)>> {
         let bytes = match cursor.int()? {
             header::HALF => 2,
             header::FLOAT => 4,
-            other => return Err(format!("channel {name} has sample type {other}; wanted is half or float")),
+            other => {
+                return Err(format!("channel {name:?} has sample type {other}; wanted is half or float"));
+            }
         };
         cursor.take(4)?;
         if [cursor.int()?, cursor.int()?] != [1, 1] {
-            return Err(format!("channel {name} is subsampled"));
+            return Err(format!("channel {name:?} is subsampled"));
         }
         if channels.last().is_some_and(|(last, _)| *last >= name) {
             return Err("damaged header: channels are not in order".into());
