@@ -55,7 +55,7 @@ impl Isa {
 }
 
 /// Calls `kernel` inside a function compiled for the current instruction set. What the kernel calls must be
-/// `#[inline(always)]` to be compiled for it too.
+/// `#[inline(always)]` to be compiled for it too, and so must a large closure be itself.
 #[inline]
 pub fn run<R>(kernel: impl FnOnce() -> R) -> R {
     #[cfg(target_arch = "x86_64")]

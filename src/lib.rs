@@ -26,9 +26,9 @@ pub mod lanes;
 pub mod medium;
 pub mod methods;
 pub mod points;
-pub mod transport;
-pub mod table;
 pub mod preset;
 pub mod spectrum;
+pub mod table;
+pub mod transport;
 
 pub use error::{Error, Result};

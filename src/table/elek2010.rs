@@ -88,7 +88,8 @@ impl Elek2010 {
 
     /// The same shell and curves for a table of other size; conditions as for [`Self::new`].
     pub fn resized(&self, size: [usize; 4]) -> Option<Self> {
-        Elek2010::new(self.ground_radius, self.ground_radius + self.height, size).map(|m| m.with_sun_curve(self.curve))
+        Elek2010::new(self.ground_radius, self.ground_radius + self.height, size)
+            .map(|m| m.with_sun_curve(self.curve))
     }
 
     /// Radius of the ground and of the top, m.
