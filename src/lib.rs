@@ -18,6 +18,7 @@
 //! scattering coefficient by 4π (Eqs. 7, 12) are absent; the factor 1/π of a Lambertian ground, absent from
 //! their Eq. 8, is present. Radiances are per unit solar irradiance on a plane normal to the beam (1/sr).
 
+pub mod bake;
 pub mod commands;
 pub mod error;
 pub mod export;
@@ -27,6 +28,7 @@ pub mod medium;
 pub mod methods;
 pub mod points;
 pub mod preset;
+pub mod sky;
 pub mod spectrum;
 pub mod table;
 pub mod transport;

@@ -2,6 +2,7 @@
 
 pub mod compact;
 pub mod elek2010;
+pub mod extinction;
 pub mod palette;
 pub mod skies;
 pub mod tables;

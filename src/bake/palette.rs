@@ -4,8 +4,8 @@
 use super::skies::Transfers;
 use crate::error::Result;
 use crate::spectrum::{
-    ColourSpace, DEFAULT_RIDGE, Reconstruction, Spectrum, delta_e_2000_scaled, fit_weights, hat_weights, multiply,
-    weighted,
+    ColourSpace, DEFAULT_RIDGE, Reconstruction, Spectrum, delta_e_2000_scaled, fit_weights, hat_weights,
+    multiply, weighted,
 };
 
 /// Colour weights of a bake, and what they cost.
@@ -126,7 +126,8 @@ struct Sums {
 
 impl Sums {
     fn new(count: usize, skies: &Transfers, targets: &[[f64; 3]]) -> Self {
-        let mut s = Sums { gram: vec![vec![0.0; count]; count], right: vec![[0.0; 3]; count], squares: [0.0; 3] };
+        let mut s =
+            Sums { gram: vec![vec![0.0; count]; count], right: vec![[0.0; 3]; count], squares: [0.0; 3] };
         for (t, xyz) in skies.iter().zip(targets).filter(|(_, xyz)| xyz[1] > 0.0) {
             let scale = 1.0 / xyz[1];
             for i in 0..count {
@@ -162,6 +163,8 @@ impl Sums {
             }
         }
         // With the matrix in triangular form U and right side y, the fitted part is Σ y_k² / U_kk.
-        (0..3).map(|c| self.squares[c] - (0..4).map(|k| a[k][4 + c] * a[k][4 + c] / a[k][k]).sum::<f64>()).sum()
+        (0..3)
+            .map(|c| self.squares[c] - (0..4).map(|k| a[k][4 + c] * a[k][4 + c] / a[k][k]).sum::<f64>())
+            .sum()
     }
 }

@@ -18,7 +18,8 @@ struct Lattice {
 
 fn lattice(medium: &Medium, offset: f64) -> Lattice {
     let low = 0.75 * lowest_sun(medium);
-    let sun = |k: usize| low + (1.0 - low) * ((k as f64 + 0.3 + 0.4 * offset) / 9.0) * ((k as f64 + 1.0) / 9.0);
+    let sun =
+        |k: usize| low + (1.0 - low) * ((k as f64 + 0.3 + 0.4 * offset) / 9.0) * ((k as f64 + 1.0) / 9.0);
     Lattice {
         altitudes: [0.0, 0.12 + 0.1 * offset, 1.0],
         views: [-0.9, -0.35, 0.04, 0.3, 0.85].map(|mu: f64| (mu + 0.1 * offset).min(1.0)),
@@ -30,8 +31,10 @@ fn lattice(medium: &Medium, offset: f64) -> Lattice {
 /// Skies, sunlit ground and sunlight of a solved planet; `offset` 0 and 1 give two samples without a common
 /// view. Dark spectra are left out.
 pub fn sample(solution: &Solution, medium: &Medium, offset: f64) -> Transfers {
-    let scatterers: Vec<Vec<usize>> =
-        (0..medium.constituents.len()).filter(|&c| medium.constituents[c].scatters()).map(|c| vec![c]).collect();
+    let scatterers: Vec<Vec<usize>> = (0..medium.constituents.len())
+        .filter(|&c| medium.constituents[c].scatters())
+        .map(|c| vec![c])
+        .collect();
     let count = medium.wavelengths_nm.len();
     let mut out: Transfers = Vec::new();
     for batch in &solution.batches {

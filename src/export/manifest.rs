@@ -22,6 +22,8 @@ pub struct Manifest {
     pub settings: Value,
     pub wavelengths: Wavelengths,
     pub colour: Colour,
+    /// Numbers that look-ups need beside the tables; each name says its unit.
+    pub constants: BTreeMap<String, Vec<f64>>,
     pub tables: Vec<Table>,
     /// Files beside the tables: pictures, the same tables in other containers.
     pub files: Vec<OtherFile>,

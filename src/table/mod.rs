@@ -4,4 +4,4 @@ mod array;
 mod elek2010;
 
 pub use array::{Array, Element, Texel, texel};
-pub use elek2010::{AxisFormula, Elek2010};
+pub use elek2010::{AxisFormula, Elek2010, SunCurve};

@@ -62,24 +62,25 @@ impl Shells {
         }
     }
 
-    /// Like [`Shells::add_path`] for one constituent and many rays at once, each from length `near` along it
-    /// to the shell's outer edge `high`, counted `passes` times.
+    /// Adds, for one constituent and many rays at once, the way between two radii inside one shell, counted
+    /// `passes` times. `b2`: squared distances of the rays' lines from the centre.
     #[inline(always)]
-    pub fn add_paths(
+    fn add_between(
         &self,
         shell: usize,
         c: usize,
-        high: f64,
+        radii: [f64; 2],
         passes: f64,
         b2: &[f64],
-        near: &[f64],
         sums: &mut [f64],
     ) {
         let low = self.edges[shell];
         let scale = 1.0 / (self.edges[shell + 1] - low);
         let cubic = self.cubic[shell * self.constituents + c];
-        for ((b2, t0), sum) in b2.iter().zip(near).zip(sums.iter_mut()) {
-            let length = (high * high - b2).max(0.0).sqrt() - t0;
+        let [inner, outer] = radii.map(|r| r * r);
+        for (b2, sum) in b2.iter().zip(sums.iter_mut()) {
+            let t0 = (inner - b2).max(0.0).sqrt();
+            let length = (outer - b2).max(0.0).sqrt() - t0;
             let mut inside = 0.0;
             for (place, weight) in GAUSS {
                 let t = t0 + length * place;
@@ -87,6 +88,43 @@ impl Shells {
             }
             *sum += passes * length * inside;
         }
+    }
+
+    /// Columns of many rays from radius `r` to the top, `[constituent][ray]`. The first `upward` rays start
+    /// upwards, the others downwards; none meets the ground.
+    #[inline(always)]
+    pub fn columns_to_top(&self, r: f64, b2: &[f64], upward: usize) -> Vec<f64> {
+        let count = b2.len();
+        let mut sums = vec![0.0; count * self.constituents];
+        let start = self.find(r);
+        for shell in 0..self.len() {
+            let (low, high) = (self.edges[shell], self.edges[shell + 1]);
+            for c in 0..self.constituents {
+                let sums = &mut sums[c * count..][..count];
+                if shell <= start {
+                    let below = [low, high.min(r)];
+                    self.add_between(shell, c, below, 2.0, &b2[upward..], &mut sums[upward..]);
+                }
+                if shell >= start {
+                    self.add_between(shell, c, [low.max(r), high], 1.0, b2, sums);
+                }
+            }
+        }
+        sums
+    }
+
+    /// Columns of many rays from radius `r` down to the ground, `[constituent][ray]`.
+    #[inline(always)]
+    pub fn columns_to_ground(&self, r: f64, b2: &[f64]) -> Vec<f64> {
+        let count = b2.len();
+        let mut sums = vec![0.0; count * self.constituents];
+        for shell in 0..=self.find(r) {
+            let part = [self.edges[shell], self.edges[shell + 1].min(r)];
+            for c in 0..self.constituents {
+                self.add_between(shell, c, part, 1.0, b2, &mut sums[c * count..][..count]);
+            }
+        }
+        sums
     }
 
     /// Columns from radius `r` to the top of the atmosphere along a direction of zenith cosine `mu` that does

@@ -5,7 +5,6 @@
 //! field. Slow (about half a millisecond a view) and careful.
 
 use super::levels::locate;
-use super::operator::interpolate;
 use super::optics::Optics;
 use super::quadrature::horizon_cosine;
 use super::rays::LONGEST_ARC;
@@ -43,6 +42,42 @@ impl Solution {
             out.transmittance.extend(t.0[..n].iter().map(|&v| f64::from(v)));
         }
         out
+    }
+
+    /// Transmittance, per wavelength, from radius `r` to a sun of zenith cosine `mu_s`; 0 behind the planet.
+    pub fn sun_transmittance(&self, r: f64, mu_s: f64) -> Vec<f64> {
+        let mut columns = vec![0.0; self.geometry.shells.constituents];
+        let mut out = Vec::new();
+        for batch in &self.batches {
+            columns.fill(0.0);
+            let through = self.to_sun(batch, r, mu_s, &mut columns);
+            out.extend(through.0[..batch.optics.count].iter().map(|&v| f64::from(v)));
+        }
+        out
+    }
+
+    /// Diffuse irradiance of the ground, per wavelength, over the solar irradiance: the orders that the ground
+    /// sends on, direct sunlight left out (TA of Elek & Kmoch's Algorithm 1).
+    pub fn ground_irradiance(&self, mu_s: f64) -> Vec<f64> {
+        let mut out = Vec::new();
+        for batch in &self.batches {
+            let flux = self.diffuse(batch, mu_s);
+            out.extend(flux.0[..batch.optics.count].iter().map(|&v| f64::from(v)));
+        }
+        out
+    }
+
+    /// Ground irradiance, cubic between the nodes of the sun axis.
+    fn diffuse(&self, batch: &Batch, mu_s: f64) -> Lanes {
+        let (node, t) = self.geometry.axis.locate(mu_s as f32);
+        let mut sum = Lanes::ZERO;
+        if t >= 0.0 {
+            let x = f64::from(node) + f64::from(t);
+            for (k, weight) in cubic_weights(node as usize, batch.state.suns, |k| k as f64, x) {
+                sum += batch.state.ground[k] * weight as f32;
+            }
+        }
+        sum.map(|v| if v > 0.0 { v } else { 0.0 })
     }
 
     fn march(&self, batch: &Batch, view: &View, last: &[usize]) -> (Lanes, Lanes, Lanes) {
@@ -88,7 +123,7 @@ impl Solution {
         let mut columns = vec![0.0; self.geometry.shells.constituents];
         let direct =
             self.to_sun(batch, self.geometry.shells.edges[0], mu_s, &mut columns) * mu_s.max(0.0) as f32;
-        let diffuse = interpolate(&batch.state.ground, &self.geometry.axis, mu_s as f32);
+        let diffuse = self.diffuse(batch, mu_s);
         batch.optics.albedo * FRAC_1_PI as f32 * (direct + diffuse)
     }
 

@@ -62,6 +62,34 @@ impl<'a> Painter<'a> {
         Painter { solution, batch, axis, groups }
     }
 
+    /// Optical depths of rays from radius `r`, to the ground or to the top: `mus` fall from the zenith (or, to
+    /// the ground, rise from the nadir) to the horizon.
+    pub fn depths(&self, r: f64, mus: &[f64], to_ground: bool) -> Vec<Lanes> {
+        let shells = &self.solution.geometry.shells;
+        let ground = shells.edges[0];
+        let b2: Vec<f64> = mus.iter().map(|mu| r * r * (1.0 - mu * mu)).collect();
+        let columns = crate::isa::run(
+            #[inline(always)]
+            || {
+                if to_ground {
+                    // Rounding must not lift a ray that grazes the ground above it.
+                    let b2: Vec<f64> = b2.iter().map(|b| b.min(ground * ground)).collect();
+                    shells.columns_to_ground(r, &b2)
+                } else {
+                    shells.columns_to_top(r, &b2, mus.iter().filter(|&&mu| mu >= 0.0).count())
+                }
+            },
+        );
+        let depth = |n: usize| {
+            let mut sum = Lanes::ZERO;
+            for (c, e) in self.batch.optics.extinction.iter().enumerate() {
+                sum += *e * columns[c * mus.len() + n] as f32;
+            }
+            sum
+        };
+        (0..mus.len()).map(depth).collect()
+    }
+
     /// Number of groups.
     pub fn groups(&self) -> usize {
         self.groups.len()
@@ -84,7 +112,10 @@ impl<'a> Painter<'a> {
                 if wanted != Wanted::Single {
                     self.multiple(&path, mu as f32, pairs, out);
                 }
-                self.single(&path, &ray, mu as f32, pairs, out);
+                let peaks_are_wanted = self.groups.iter().any(|g| g.single.deeper.is_some());
+                if wanted != Wanted::Multiple || peaks_are_wanted {
+                    self.single(&path, &ray, mu as f32, pairs, out);
+                }
             },
         );
     }

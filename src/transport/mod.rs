@@ -24,3 +24,5 @@ pub mod solve;
 mod state;
 mod sunlight;
 pub mod view;
+
+pub use optics::PhaseLanes as Phase;

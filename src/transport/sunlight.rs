@@ -64,20 +64,7 @@ fn level_columns(shells: &Shells, level: usize, nodes: usize, out: &mut [f64]) {
         // At the last node the ray grazes the ground, to the bit.
         *b = if n + 1 == nodes { ground * ground } else { r * r * (1.0 - mu * mu) };
     }
-    let mut near = vec![0.0; nodes];
-    let mut sums = vec![0.0; nodes * shells.constituents];
-    for shell in 0..shells.len() {
-        let first = if shell < level { upward } else { 0 };
-        let passes = if shell < level { 2.0 } else { 1.0 };
-        let (low, high) = (shells.edges[shell], shells.edges[shell + 1]);
-        for n in first..nodes {
-            near[n] = (low * low - b2[n]).max(0.0).sqrt();
-        }
-        for c in 0..shells.constituents {
-            let sum = &mut sums[c * nodes..][..nodes];
-            shells.add_paths(shell, c, high, passes, &b2[first..], &near[first..], &mut sum[first..]);
-        }
-    }
+    let sums = shells.columns_to_top(r, &b2, upward);
     for n in 0..nodes {
         for c in 0..shells.constituents {
             out[n * shells.constituents + c] = sums[c * nodes + n];

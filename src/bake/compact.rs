@@ -1,0 +1,207 @@
+//! The compact layout: spectral radiance at four wavelengths, single scattering apart for each phase function.
+//!
+//! Every table holds ln S̄ − c of S̄ = I / (1 − T), T the transmittance of the ray: a mean source, which varies
+//! far less than the light itself and has no gamut to leave. A look-up is
+//!   I = (1 − T) (Σ_g p_g(ν) S̄_g + S̄_multiple),   1 − T = −expm1(−τ) from the table of optical depth.
+
+use super::extinction::{channels, phase, table};
+use super::palette::Palette;
+use super::tables::{Baked, axes_of, axis, file_order};
+use crate::export::manifest::Encoding;
+use crate::lanes::Lanes;
+use crate::medium::Medium;
+use crate::table::{Elek2010, SunCurve};
+use crate::transport::fill::{Painter, RayLight, SunPairs, Wanted};
+use crate::transport::solve::Solution;
+use rayon::prelude::*;
+
+/// Name of the layout and of its folder.
+pub const LAYOUT: &str = "compact";
+/// Texels of the single-scattering tables and of the multiple-scattering one: altitude, view, sun, azimuth.
+pub const SINGLE_SIZE: [usize; 4] = [24, 64, 64, 4];
+pub const MULTIPLE_SIZE: [usize; 4] = [16, 64, 40, 4];
+const DEPTH_SIZE: [usize; 2] = [64, 256];
+const IRRADIANCE_SIZE: usize = 128;
+/// Stored logarithms at or below this stand for darkness.
+pub const FLOOR: f64 = -24.0;
+/// Where this layout's sun axes are finest.
+const SUN: SunCurve = SunCurve::Rational { shift: 0.07, width: 0.25 };
+
+/// The mapping of this layout for a medium; none where a size is out of range.
+pub fn mapping(medium: &Medium, size: [usize; 4]) -> Option<Elek2010> {
+    Elek2010::new(medium.ground_radius, medium.top_radius, size).map(|m| m.with_sun_curve(SUN))
+}
+
+/// Lists of constituents that share a phase function at every wavelength.
+pub fn groups(medium: &Medium) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for (c, constituent) in medium.constituents.iter().enumerate().filter(|(_, c)| c.scatters()) {
+        match groups.iter_mut().find(|g| medium.constituents[g[0]].phase == constituent.phase) {
+            Some(group) => group.push(c),
+            None => groups.push(vec![c]),
+        }
+    }
+    groups
+}
+
+/// Sizes of the single and multiple scattering tables.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sizes {
+    pub single: [usize; 4],
+    pub multiple: [usize; 4],
+}
+
+impl Default for Sizes {
+    fn default() -> Self {
+        Sizes { single: SINGLE_SIZE, multiple: MULTIPLE_SIZE }
+    }
+}
+
+/// The tables of the layout. Returns them and the number of multiple-scattering values that were not positive
+/// where there is light.
+pub fn tables(medium: &Medium, solution: &Solution, palette: &Palette, sizes: Sizes) -> (Vec<Baked>, usize) {
+    let groups = groups(medium);
+    let single = mapping(medium, sizes.single).expect("sizes are checked with the arguments");
+    let multiple = mapping(medium, sizes.multiple).expect("sizes are checked with the arguments");
+    let mut out = Vec::new();
+    let singles = fill(solution, palette, &single, &groups, Wanted::Single);
+    for (group, texels) in groups.iter().zip(singles) {
+        let name = format!("single_{}", medium.constituents[group[0]].name);
+        out.push(encode(
+            name,
+            "single scattering without phase function over 1 - T",
+            texels,
+            &single,
+            palette,
+        ));
+    }
+    let mut rest = fill(solution, palette, &multiple, &groups, Wanted::Multiple).into_iter();
+    let first = rest.next().unwrap_or_else(|| vec![[0.0; 4]; multiple.size().iter().product()]);
+    let sum = rest.fold(first, |mut sum, more| {
+        sum.iter_mut().zip(more).for_each(|(s, m)| (0..4).for_each(|k| s[k] += m[k]));
+        sum
+    });
+    let negative = sum.iter().flatten().filter(|v| **v < 0.0).count();
+    out.push(encode("multiple".into(), "light scattered more than once over 1 - T", sum, &multiple, palette));
+    out.push(table(medium, solution, palette, LAYOUT, &multiple, DEPTH_SIZE, true));
+    out.push(irradiance(solution, palette, &multiple));
+    if !groups.is_empty() {
+        out.push(phase(medium, palette, LAYOUT, &groups));
+    }
+    (out, negative)
+}
+
+/// Mean sources at the four wavelengths, `[group][ray order]`.
+fn fill(
+    solution: &Solution,
+    palette: &Palette,
+    mapping: &Elek2010,
+    groups: &[Vec<usize>],
+    wanted: Wanted,
+) -> Vec<Vec<[f32; 4]>> {
+    let [altitudes, views, suns, azimuths] = mapping.size();
+    let mu_s: Vec<f64> = (0..suns).map(|k| mapping.mu_s(k)).collect();
+    let cosines: Vec<f64> = (0..azimuths).map(|l| mapping.cos_azimuth(l)).collect();
+    let pairs = SunPairs::new(&mu_s, &cosines);
+    let count = groups.len();
+    // `[ray][group][pair]`, so that a ray's texels lie together.
+    let mut texels = vec![[0.0f32; 4]; altitudes * views * count * pairs.len()];
+    for batch in &solution.batches {
+        let four: Vec<(usize, usize)> = (palette.four.iter().enumerate())
+            .filter(|(_, w)| (batch.first..batch.first + batch.optics.count).contains(w))
+            .map(|(k, w)| (k, w - batch.first))
+            .collect();
+        if four.is_empty() || count == 0 {
+            continue;
+        }
+        let painter = Painter::new(solution, batch, groups);
+        texels.par_chunks_mut(count * pairs.len()).enumerate().for_each_init(
+            RayLight::default,
+            |light, (ray, out)| {
+                let altitude = mapping.altitude(ray / views);
+                let (mu, hits_ground) = mapping.mu(altitude, ray % views);
+                painter.ray(mapping.radius(ray / views), mu, hits_ground, &pairs, wanted, light);
+                let source = if wanted == Wanted::Single { &light.single } else { &light.multiple };
+                let inverse = inverse_opacity(light.depth);
+                for (texel, value) in out.iter_mut().zip(source) {
+                    for &(k, w) in &four {
+                        texel[k] = value[w] * inverse[w];
+                    }
+                }
+            },
+        );
+    }
+    (0..count)
+        .map(|g| {
+            let part = |ray: &[[f32; 4]]| ray[g * pairs.len()..][..pairs.len()].to_vec();
+            texels.chunks(count * pairs.len()).flat_map(part).collect()
+        })
+        .collect()
+}
+
+/// 1 / (1 − e^−τ), and 0 where there is nothing on the ray.
+fn inverse_opacity(depth: Lanes) -> Lanes {
+    depth.map(|d| if d > 0.0 { (-1.0 / libm::expm1(-f64::from(d))) as f32 } else { 0.0 })
+}
+
+/// ln S̄ − c, with c the mean logarithm of the brighter half of the table, by day: there halves are finest.
+fn encode(
+    name: String,
+    quantity: &str,
+    texels: Vec<[f32; 4]>,
+    mapping: &Elek2010,
+    palette: &Palette,
+) -> Baked {
+    let mut logs: Vec<[f64; 4]> = texels
+        .par_iter()
+        .map(|t| t.map(|v| if v > 0.0 { libm::log(f64::from(v)) } else { f64::NEG_INFINITY }))
+        .collect();
+    let by_day = |n: usize| mapping.mu_s(n / mapping.size()[3] % mapping.size()[2]) > 0.1;
+    let bright = |v: &&f64| v.is_finite();
+    let used = palette.four.len();
+    let (mut sum, mut n) = (0.0, 0usize);
+    for (index, log) in logs.iter().enumerate() {
+        if by_day(index) {
+            for v in log[..used].iter().filter(bright) {
+                sum += v;
+                n += 1;
+            }
+        }
+    }
+    let offset = if n > 0 { sum / n as f64 } else { 0.0 };
+    for v in logs.iter_mut().flatten() {
+        *v = (*v - offset).max(FLOOR);
+    }
+    Baked {
+        layout: LAYOUT.into(),
+        name,
+        axes: axes_of(mapping),
+        channels: channels(palette, quantity, "1/sr"),
+        encoding: Encoding::log(1.0, offset, FLOOR),
+        texels: file_order(logs.iter().map(|l| l.map(|v| v as f32)).collect(), mapping.size()),
+    }
+}
+
+/// Diffuse irradiance of the ground over solar irradiance, as a logarithm.
+fn irradiance(solution: &Solution, palette: &Palette, mapping: &Elek2010) -> Baked {
+    let [altitudes, views, _, azimuths] = mapping.size();
+    let long = mapping.resized([altitudes, views, IRRADIANCE_SIZE, azimuths]).expect("a valid size");
+    let texels = (0..IRRADIANCE_SIZE)
+        .map(|k| {
+            let light = solution.ground_irradiance(long.mu_s(k));
+            let mut texel = [FLOOR as f32; 4];
+            for (t, &w) in texel.iter_mut().zip(&palette.four) {
+                *t = if light[w] > 0.0 { libm::log(light[w]).max(FLOOR) as f32 } else { FLOOR as f32 };
+            }
+            texel
+        })
+        .collect();
+    Baked {
+        layout: LAYOUT.into(),
+        name: "irradiance".into(),
+        axes: vec![axis(&long.axes()[2])],
+        channels: channels(palette, "diffuse irradiance of the ground over solar irradiance", "1"),
+        encoding: Encoding::log(1.0, 0.0, FLOOR),
+        texels,
+    }
+}

@@ -1,0 +1,129 @@
+//! Tables that both layouts share: optical depth of rays and phase functions, at the four wavelengths.
+//!
+//! Optical depth per wavelength rather than per RGB or per constituent: four exponentials give sunlight of any
+//! colour through any number of constituents, and nothing leaves the gamut, as RGB of T does at sunset.
+
+use super::palette::Palette;
+use super::tables::{Baked, Channel, axis};
+use crate::export::manifest::{Axis, Encoding};
+use crate::medium::Medium;
+use crate::table::Elek2010;
+use crate::transport::fill::Painter;
+use crate::transport::solve::Solution;
+use rayon::prelude::*;
+
+/// Logarithms below this stand for an optical depth of 0.
+const FLOOR: f64 = -20.0;
+const CHANNELS: [&str; 4] = ["R", "G", "B", "A"];
+
+/// Optical depth to the ground or to the top against altitude and view, on the mapping's first two axes at
+/// another size; its logarithm where `logarithm` is set (around the vertical depth, where halves are finest).
+pub fn table(
+    medium: &Medium,
+    solution: &Solution,
+    palette: &Palette,
+    layout: &str,
+    mapping: &Elek2010,
+    size: [usize; 2],
+    logarithm: bool,
+) -> Baked {
+    let [altitudes, views] = size;
+    let mapping = mapping.resized([altitudes, views, 2, 2]).expect("a valid size");
+    let mut depths = vec![[0.0f32; 4]; altitudes * views];
+    depths.par_chunks_mut(views).enumerate().for_each(|(i, out)| row(solution, palette, &mapping, i, out));
+    let offset = if logarithm { typical(medium, palette) } else { 0.0 };
+    let encode = |v: f32| {
+        if !logarithm {
+            return v;
+        }
+        let log = if v > 0.0 { libm::log(f64::from(v)) - offset } else { FLOOR };
+        log.max(FLOOR) as f32
+    };
+    // x is altitude, y the view.
+    let texels =
+        (0..altitudes * views).map(|n| depths[(n % altitudes) * views + n / altitudes].map(encode)).collect();
+    let axes: Vec<Axis> = mapping.axes()[..2].iter().map(axis).collect();
+    let encoding = if logarithm { Encoding::log(1.0, offset, FLOOR) } else { Encoding::linear(1.0) };
+    Baked {
+        layout: layout.into(),
+        name: "transmittance".into(),
+        axes,
+        channels: channels(palette, "optical depth of the ray to the ground or to the top", "1"),
+        encoding,
+        texels,
+    }
+}
+
+fn row(solution: &Solution, palette: &Palette, mapping: &Elek2010, i: usize, out: &mut [[f32; 4]]) {
+    let half = out.len() / 2;
+    let (altitude, r) = (mapping.altitude(i), mapping.radius(i));
+    for (start, to_ground) in [(0, true), (half, false)] {
+        let mus: Vec<f64> = (start..start + half).map(|j| mapping.mu(altitude, j).0).collect();
+        for batch in &solution.batches {
+            let painter = Painter::new(solution, batch, &[]);
+            for (texel, depth) in out[start..].iter_mut().zip(painter.depths(r, &mus, to_ground)) {
+                for (k, &w) in palette.four.iter().enumerate() {
+                    if w >= batch.first && w < batch.first + batch.optics.count {
+                        texel[k] = depth[w - batch.first];
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Logarithm of the mean vertical optical depth: the middle of what a table holds.
+fn typical(medium: &Medium, palette: &Palette) -> f64 {
+    let depth = medium.vertical_optical_depth();
+    let mean = palette.four.iter().map(|&w| depth[w]).sum::<f64>() / palette.four.len() as f64;
+    if mean > 0.0 { libm::log(mean) } else { 0.0 }
+}
+
+/// Up to four channels, one a wavelength.
+pub fn channels(palette: &Palette, quantity: &str, unit: &str) -> Vec<Channel> {
+    let nm = palette.four_nm();
+    nm.iter().zip(CHANNELS).map(|(nm, c)| Channel::new(c, format!("{quantity}, at {nm} nm"), unit)).collect()
+}
+
+/// Texels of a phase function over √((1 − ν)/2), dense in the forward direction.
+const PHASE_SIZE: usize = 512;
+
+/// Phase functions at the four wavelengths as natural logarithms, a row for each group of constituents.
+pub fn phase(medium: &Medium, palette: &Palette, layout: &str, groups: &[Vec<usize>]) -> Baked {
+    let mut texels = Vec::new();
+    for group in groups {
+        for k in 0..PHASE_SIZE {
+            let x = k as f64 / (PHASE_SIZE - 1) as f64;
+            let nu = 1.0 - 2.0 * x * x;
+            let mut texel = [0.0f32; 4];
+            for (t, &w) in texel.iter_mut().zip(&palette.four) {
+                let value = medium.constituents[group[0]].phase[w].value(nu);
+                *t = (if value > 0.0 { libm::log(value) } else { FLOOR }).max(FLOOR) as f32;
+            }
+            texels.push(texel);
+        }
+    }
+    let angle = Axis {
+        name: "angle".into(),
+        size: PHASE_SIZE,
+        formula: "x = sqrt((1 - nu) / 2), nu the cosine of the scattering angle (1 straight on)".into(),
+        constants: Default::default(),
+        unit: "1".into(),
+    };
+    let names: Vec<&str> = groups.iter().map(|g| medium.constituents[g[0]].name.as_str()).collect();
+    let row = Axis {
+        name: "group".into(),
+        size: groups.len(),
+        formula: format!("one row each, not filtered: {}", names.join(", ")),
+        constants: Default::default(),
+        unit: "1".into(),
+    };
+    Baked {
+        layout: layout.into(),
+        name: "phase".into(),
+        axes: vec![angle, row],
+        channels: channels(palette, "phase function, integrates to 1 over the sphere", "1/sr"),
+        encoding: Encoding::log(1.0, 0.0, FLOOR),
+        texels,
+    }
+}

@@ -1,0 +1,161 @@
+//! What baked tables answer, from their files alone: the look-ups that an engine does, in double precision.
+//!
+//! Knows manifests and decoded pictures, nothing of presets or of the solver.
+
+mod compact;
+mod elek2010;
+mod volume;
+
+use crate::error::{Error, Result};
+use crate::export::manifest::{Manifest, Table};
+use crate::export::{Atlas, exr};
+use crate::points::Point;
+use compact::Compact;
+use elek2010::Elek2010Sky;
+use std::collections::BTreeMap;
+use std::path::Path;
+use volume::{Plane, Volume};
+
+/// Which part of the light is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Component {
+    Total,
+    Scattering,
+    Ground,
+}
+
+/// A phase function to put on aerosol light in place of the table's own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AerosolPhase {
+    /// The preset's, from the phase table.
+    Preset,
+    /// Isotropic: the medium that the paper's layout was solved for.
+    Isotropic,
+}
+
+/// A layout of a bake, ready to answer.
+pub enum Sky {
+    Compact(Compact),
+    Elek2010(Elek2010Sky),
+}
+
+/// What the answers of a layout are.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Channels {
+    /// Radiance over solar irradiance, 1/sr, at these wavelengths, nm.
+    Wavelengths(Vec<f64>),
+    /// Linear RGB: luminance over the star's illuminance, 1/sr.
+    Rgb,
+}
+
+impl Sky {
+    /// Opens one layout of a bake on disk.
+    ///
+    /// # Errors
+    /// `File` for a missing, truncated or foreign file, or one that the manifest does not describe.
+    pub fn open(bake: &Path, manifest: &Manifest, layout: &str) -> Result<Sky> {
+        let folder = if bake.is_dir() { bake } else { bake.parent().unwrap_or(Path::new(".")) };
+        let mut pictures = BTreeMap::new();
+        for table in manifest.tables.iter().filter(|t| t.layout == layout) {
+            pictures.insert(table.name.clone(), exr::from_exr(&folder.join(&table.file))?);
+        }
+        Sky::new(bake, manifest, layout, &pictures)
+    }
+
+    /// The same from pictures in memory, by table name. `bake` is for messages.
+    pub fn new(
+        bake: &Path,
+        manifest: &Manifest,
+        layout: &str,
+        pictures: &BTreeMap<String, Atlas>,
+    ) -> Result<Sky> {
+        let source = Source { bake, manifest, layout, pictures };
+        match layout {
+            "compact" => Ok(Sky::Compact(Compact::new(&source)?)),
+            "elek2010" => Ok(Sky::Elek2010(Elek2010Sky::new(&source)?)),
+            other => Err(Error::Argument(format!("layout {other}: not one that this tool can read"))),
+        }
+    }
+
+    pub fn channels(&self) -> Channels {
+        match self {
+            Sky::Compact(sky) => Channels::Wavelengths(sky.wavelengths_nm.clone()),
+            Sky::Elek2010(_) => Channels::Rgb,
+        }
+    }
+
+    /// The light that arrives at a point of view, one value a channel, 1/sr.
+    pub fn radiance(&self, point: &Point, component: Component, phase: AerosolPhase) -> Vec<f64> {
+        match self {
+            Sky::Compact(sky) => sky.radiance(point, component),
+            Sky::Elek2010(sky) => sky.radiance(point, component, phase).to_vec(),
+        }
+    }
+
+    /// The same as linear RGB over the star's illuminance, 1/sr.
+    pub fn rgb(&self, point: &Point, component: Component) -> [f64; 3] {
+        match self {
+            Sky::Compact(sky) => sky.rgb(&sky.radiance(point, component)),
+            Sky::Elek2010(sky) => sky.radiance(point, component, AerosolPhase::Preset),
+        }
+    }
+}
+
+/// Where a layout's tables come from.
+struct Source<'a> {
+    bake: &'a Path,
+    manifest: &'a Manifest,
+    layout: &'a str,
+    pictures: &'a BTreeMap<String, Atlas>,
+}
+
+impl Source<'_> {
+    fn refuse(&self, reason: String) -> Error {
+        Error::file(self.bake, reason)
+    }
+
+    fn table(&self, name: &str) -> Result<(&Table, &Atlas)> {
+        let found = self.manifest.tables.iter().find(|t| t.layout == self.layout && t.name == name);
+        match (found, self.pictures.get(name)) {
+            (Some(table), Some(atlas)) => Ok((table, atlas)),
+            _ => Err(self.refuse(format!("layout {} has no table {name}", self.layout))),
+        }
+    }
+
+    fn volume(&self, name: &str) -> Result<Volume> {
+        let (table, atlas) = self.table(name)?;
+        Volume::new(table, atlas).map_err(|reason| self.refuse(reason))
+    }
+
+    fn plane(&self, name: &str) -> Result<Plane> {
+        let (table, atlas) = self.table(name)?;
+        Plane::new(table, atlas).map_err(|reason| self.refuse(reason))
+    }
+
+    /// A list of numbers of the manifest.
+    fn constant(&self, name: &str) -> Result<Vec<f64>> {
+        let found = self.manifest.constants.get(name);
+        found.cloned().ok_or_else(|| self.refuse(format!("bake.json: constants.{name} is missing")))
+    }
+
+    fn number(&self, name: &str) -> Result<f64> {
+        let list = self.constant(name)?;
+        list.first().copied().ok_or_else(|| self.refuse(format!("bake.json: constants.{name} is empty")))
+    }
+
+    /// A colour matrix as rows R, G, B.
+    fn matrix(&self, name: &str) -> Result<Vec<Vec<f64>>> {
+        let found = self.manifest.colour.matrices.get(name);
+        match found {
+            Some(m) if m.len() == 3 => Ok(m.clone()),
+            _ => {
+                Err(self
+                    .refuse(format!("bake.json: colour.matrices.{name} is missing or has not three rows")))
+            }
+        }
+    }
+}
+
+fn multiply(matrix: &[Vec<f64>], values: &[f64]) -> [f64; 3] {
+    std::array::from_fn(|c| matrix[c].iter().zip(values).map(|(m, v)| m * v).sum())
+}

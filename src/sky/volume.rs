@@ -1,0 +1,199 @@
+//! Tables in memory: stored samples, interpolated before they are decoded, as a texture unit would.
+
+use crate::export::Atlas;
+use crate::export::manifest::{Encoding, Table};
+use crate::table::{Elek2010, SunCurve, Texel, texel};
+
+/// Stored samples of up to four channels, x fastest, and how each channel is decoded.
+struct Texels {
+    values: Vec<[f32; 4]>,
+    encodings: Vec<Encoding>,
+}
+
+impl Texels {
+    fn new(table: &Table, atlas: &Atlas) -> Result<Self, String> {
+        let expected: usize = table.shape.iter().product();
+        let mut values = vec![[0.0; 4]; expected];
+        let mut encodings = Vec::new();
+        if table.channels.len() > 4 {
+            return Err(format!("{}: more than four channels", table.file));
+        }
+        for (k, info) in table.channels.iter().enumerate() {
+            let channel = atlas
+                .channel(&info.name)
+                .ok_or_else(|| format!("{}: channel {} is missing", table.file, info.name))?;
+            if channel.samples.len() != expected {
+                return Err(format!("{}: {} samples, not {expected}", table.file, channel.samples.len()));
+            }
+            for (n, v) in values.iter_mut().enumerate() {
+                v[k] = channel.samples.get(n);
+            }
+            encodings.push(info.encoding.clone().unwrap_or_else(|| table.encoding.clone()));
+        }
+        Ok(Texels { values, encodings })
+    }
+
+    fn channels(&self) -> usize {
+        self.encodings.len()
+    }
+
+    fn decode(&self, stored: [f64; 4]) -> [f64; 4] {
+        let mut out = [0.0; 4];
+        for (k, e) in self.encodings.iter().enumerate() {
+            out[k] = e.decode(stored[k]);
+        }
+        out
+    }
+
+    /// Σ weight · stored sample over the corners around a place; `strides[axis]` in texels.
+    fn interpolate<const D: usize>(&self, place: &[Texel; D], strides: &[usize; D]) -> [f64; 4] {
+        let mut sum = [0.0; 4];
+        for corner in 0..1usize << D {
+            let (mut weight, mut at) = (1.0, 0);
+            for axis in 0..D {
+                let upper = corner >> axis & 1;
+                weight *= if upper == 1 { place[axis].1 } else { 1.0 - place[axis].1 };
+                at += (place[axis].0 + upper) * strides[axis];
+            }
+            if weight != 0.0 {
+                for k in 0..4 {
+                    sum[k] += weight * f64::from(self.values[at][k]);
+                }
+            }
+        }
+        sum
+    }
+}
+
+/// The mapping that a table's axes describe.
+fn mapping(table: &Table, size: [usize; 4]) -> Result<Elek2010, String> {
+    let constant = |axis: usize, name: &str| {
+        let axis = table.axes.get(axis).ok_or_else(|| format!("{}: an axis is missing", table.name))?;
+        axis.constants
+            .get(name)
+            .copied()
+            .ok_or_else(|| format!("{}: axis {} has no {name}", table.name, axis.name))
+    };
+    let shell = Elek2010::new(constant(0, "r_ground")?, constant(0, "r_top")?, size)
+        .ok_or_else(|| format!("{}: sizes {size:?} or radii are out of range", table.name))?;
+    let sun = table.axes.iter().position(|a| a.name == "sun");
+    Ok(match sun.map(|k| (constant(k, "shift"), constant(k, "width"))) {
+        Some((Ok(shift), Ok(width))) => shell.with_sun_curve(SunCurve::Rational { shift, width }),
+        _ => shell,
+    })
+}
+
+/// A table over altitude, view, sun and azimuth.
+pub struct Volume {
+    texels: Texels,
+    mapping: Elek2010,
+}
+
+/// A view inside the shell in the coordinates of the mapping.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    pub altitude: f64,
+    pub mu: f64,
+    pub mu_s: f64,
+    pub nu: f64,
+    pub hits_ground: bool,
+}
+
+impl Place {
+    pub fn cos_azimuth(&self) -> f64 {
+        let sines = ((1.0 - self.mu * self.mu) * (1.0 - self.mu_s * self.mu_s)).max(0.0).sqrt();
+        if sines > 0.0 { ((self.nu - self.mu * self.mu_s) / sines).clamp(-1.0, 1.0) } else { 1.0 }
+    }
+}
+
+impl Volume {
+    pub fn new(table: &Table, atlas: &Atlas) -> Result<Self, String> {
+        let size: [usize; 4] =
+            table.shape.clone().try_into().map_err(|_| format!("{}: not four axes", table.file))?;
+        Ok(Volume { texels: Texels::new(table, atlas)?, mapping: mapping(table, size)? })
+    }
+
+    pub fn mapping(&self) -> &Elek2010 {
+        &self.mapping
+    }
+
+    /// Decoded values at a place; none below the sun axis, where it is dark.
+    pub fn at(&self, p: &Place) -> Option<[f64; 4]> {
+        let place = self.mapping.locate(p.altitude, p.mu, p.mu_s, p.cos_azimuth(), p.hits_ground)?;
+        let [x, y, z, _] = self.mapping.size();
+        Some(self.texels.decode(self.texels.interpolate(&place, &[1, x, x * y, x * y * z])))
+    }
+}
+
+/// A table over one or two axes.
+pub struct Plane {
+    texels: Texels,
+    size: [usize; 2],
+    mapping: Option<Elek2010>,
+}
+
+impl Plane {
+    pub fn new(table: &Table, atlas: &Atlas) -> Result<Self, String> {
+        let size = [table.shape.first().copied().unwrap_or(1), table.shape.get(1).copied().unwrap_or(1)];
+        let names: Vec<&str> = table.axes.iter().map(|a| a.name.as_str()).collect();
+        let mapping = match names[..] {
+            ["altitude", "view"] => Some(mapping(table, [size[0], size[1], 2, 2])?),
+            _ => None,
+        };
+        Ok(Plane { texels: Texels::new(table, atlas)?, size, mapping })
+    }
+
+    pub fn channels(&self) -> usize {
+        self.texels.channels()
+    }
+
+    /// Decoded values at a row (taken as it is) and a place 0..1 along x.
+    pub fn at(&self, x: f64, row: usize) -> [f64; 4] {
+        let place = [texel(x, self.size[0]), (row.min(self.size[1] - 1), 0.0)];
+        self.texels.decode(self.texels.interpolate(&place, &[1, self.size[0]]))
+    }
+
+    /// Optical depths of a ray, of a table over altitude and view.
+    pub fn depth(&self, altitude: f64, mu: f64, hits_ground: bool) -> [f64; 4] {
+        let Some(mapping) = &self.mapping else { return [0.0; 4] };
+        let x = texel(mapping.altitude_coordinate(altitude), self.size[0]);
+        let y = mapping.view_texel(altitude, mu, hits_ground);
+        self.texels.decode(self.texels.interpolate(&[x, y], &[1, self.size[0]]))
+    }
+
+    /// Transmittance towards a sun of zenith cosine `mu_s`; 0 behind the planet.
+    pub fn sunlight(&self, altitude: f64, mu_s: f64) -> [f64; 4] {
+        match &self.mapping {
+            Some(mapping) if mapping.hits_ground(altitude, mu_s) => [0.0; 4],
+            _ => self.depth(altitude, mu_s, false).map(|d| libm::exp(-d)),
+        }
+    }
+}
+
+/// The point of view as a place inside the shell of `mapping`; none where the ray misses the atmosphere.
+pub fn enter(point: &crate::points::Point, mapping: &Elek2010) -> Option<Place> {
+    let [ground, top] = mapping.radii();
+    let nu = point.nu().clamp(-1.0, 1.0);
+    let height = top - ground;
+    if point.altitude <= height {
+        let hits_ground = mapping.hits_ground(point.altitude, point.mu);
+        return Some(Place { altitude: point.altitude, mu: point.mu, mu_s: point.mu_s, nu, hits_ground });
+    }
+    let r = ground + point.altitude;
+    let across2 = r * r * (1.0 - point.mu * point.mu);
+    if point.mu >= 0.0 || across2 >= top * top {
+        return None;
+    }
+    let along = -(top * top - across2).sqrt();
+    let mu_s = ((r * point.mu_s + (along - r * point.mu) * nu) / top).clamp(-1.0, 1.0);
+    let mu = along / top;
+    Some(Place { altitude: height, mu, mu_s, nu, hits_ground: across2 <= ground * ground })
+}
+
+/// Cosine of the sun's zenith angle where a ray meets the ground.
+pub fn sun_at_ground(place: &Place, mapping: &Elek2010) -> f64 {
+    let [ground, _] = mapping.radii();
+    let r = ground + place.altitude;
+    let length = mapping.distance(place.altitude, place.mu, true);
+    ((r * place.mu_s + length * place.nu) / ground).clamp(-1.0, 1.0)
+}
