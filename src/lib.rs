@@ -18,6 +18,7 @@
 //! scattering coefficient by 4π (Eqs. 7, 12) are absent; the factor 1/π of a Lambertian ground, absent from
 //! their Eq. 8, is present. Radiances are per unit solar irradiance on a plane normal to the beam (1/sr).
 
+pub mod commands;
 pub mod error;
 pub mod isa;
 pub mod lanes;
