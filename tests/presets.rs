@@ -266,6 +266,19 @@ fn presets_are_found_by_name_or_path() {
     assert!(error.contains("line 2 column"), "{error}");
 }
 
+/// An optical depth is met however thin the layer is against the shell: 10 m of haze under a top of 45 km.
+#[test]
+fn optical_depths_are_met_by_thin_layers() {
+    let mut planet = red_planet();
+    let dust = &mut planet["constituents"][1];
+    dust["density_factor"] = json!(1);
+    dust["profile"] = json!({"kind": "exponential", "scale_height_m": 10, "source": "x"});
+    let planet = read(&planet).unwrap();
+    let dust = &planet.medium(&[500.0]).constituents[1];
+    assert!((dust.density.column(0.0, planet.height()) * dust.extinction(0) - 0.5).abs() < 1e-12);
+    assert!((dust.extinction(0) - 0.05).abs() < 1e-12);
+}
+
 /// Spectra that end inside 380–780 nm are held and reported; the shipped ones leave nothing open.
 #[test]
 fn held_spectra_are_reported() {

@@ -1,2 +1,11 @@
-//! One short file a command.
+//! One file a command: arguments in, results on standard output, talk on standard error.
+
+pub mod bake;
+pub mod colour;
+mod colour_input;
+mod machine;
+pub mod presets;
+mod presets_show;
+pub mod sample;
+mod text;
 pub mod verify;

@@ -53,6 +53,10 @@ impl DensityProfile {
 
     /// Vertical column ∫ density dz between two altitudes, m.
     pub fn column(&self, from: f64, to: f64) -> f64 {
+        if let DensityProfile::Exponential { scale_height } = self {
+            // Closed form: a thin layer under a high top would fall between the steps of a rule.
+            return -scale_height * libm::exp(-from / scale_height) * libm::expm1((from - to) / scale_height);
+        }
         let mut edges = vec![from, to];
         edges.extend(self.kinks().into_iter().filter(|&k| k > from && k < to));
         edges.sort_by(f64::total_cmp);

@@ -41,7 +41,8 @@ pub fn spectrum_names() -> impl Iterator<Item = &'static str> {
     SPECTRA.iter().map(|s| s.0)
 }
 
-/// A shipped spectrum by name, or a CSV file beside the preset by a name that ends in `.csv`. The file has a
+/// A shipped spectrum by name, or a CSV file by a name that ends in `.csv`, beside the preset or else from the
+/// current folder. The file has a
 /// line `# source: …`, then a header `wavelength_nm,<quantity>`, which must be `quantity`, then rows.
 pub fn spectrum(name: &str, quantity: &str, beside: &str) -> Result<Option<Spectrum>> {
     if let Some((_, text)) = SPECTRA.iter().find(|s| s.0 == name) {
@@ -50,7 +51,8 @@ pub fn spectrum(name: &str, quantity: &str, beside: &str) -> Result<Option<Spect
     if !name.ends_with(".csv") {
         return Ok(None);
     }
-    let path = Path::new(beside).parent().unwrap_or(Path::new("")).join(name);
+    let near = Path::new(beside).parent().unwrap_or(Path::new("")).join(name);
+    let path = if near.exists() { near } else { Path::new(name).to_path_buf() };
     let text = std::fs::read_to_string(&path).map_err(|e| Error::reading(&path, e))?;
     parse(&path.display().to_string(), &text, quantity).map(Some)
 }

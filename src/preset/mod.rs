@@ -1,6 +1,6 @@
 //! Presets: from a JSON file, shipped or the user's own, to a validated planet in SI.
 //!
-//! Two types and one border. [`raw`] is the file as written: any JSON, with the path of every value for error
+//! Two types and one border. `raw` is the file as written: any JSON, with the path of every value for error
 //! messages. [`Planet`] is what the rest of the program sees: every number checked, in SI, named spectra looked
 //! up. The modules `read_*` are the border, and the only place that knows the units of files.
 
@@ -30,7 +30,7 @@ use raw::Raw;
 use std::path::Path;
 
 /// A planet by the name of a shipped preset (`earth`) or by the path of a JSON file, with `path.to.key=value`
-/// overrides applied to the JSON before it is read (see [`overrides`]).
+/// overrides applied to the JSON before it is read (see `overrides.rs`).
 ///
 /// Errors name the file, the key's path, the value and the reason; an unknown name brings the nearest one.
 pub fn load(name_or_path: &str, set: &[String]) -> Result<Planet> {

@@ -3,6 +3,9 @@
 use crate::error::{Error, Result};
 use serde_json::{Map, Value};
 
+/// Longest length of a preset, m: more than the radius of the largest star.
+const MOST_METRES: f64 = 1e13;
+
 /// A JSON value, the file it stands in and the path to it (`constituents[1].phase.g`).
 #[derive(Clone, Debug)]
 pub struct Raw<'a> {
@@ -154,11 +157,16 @@ impl<'a> Raw<'a> {
         Ok(list)
     }
 
-    /// Key `{stem}_m` or `{stem}_km`, whichever is given, as a length in metres for which `holds`.
+    /// Key `{stem}_m` or `{stem}_km`, whichever is given, as a length in metres for which `holds` (and which is
+    /// no longer than any star is wide).
     pub fn length(&self, stem: &str, what: &str, holds: impl Fn(f64) -> bool) -> Result<f64> {
         let (metres, kilometres) = (format!("{stem}_m"), format!("{stem}_km"));
         let (unit, raw) = self.one_of(&[&kilometres, &metres])?;
-        Ok(raw.number_that(what, holds)? * [1e3, 1.0][unit])
+        let length = raw.number_that(what, holds)? * [1e3, 1.0][unit];
+        if length > MOST_METRES {
+            return Err(raw.refuse("must be less than 1e13 m"));
+        }
+        Ok(length)
     }
 
     /// Every object that holds numbers must say where they come from.

@@ -10,7 +10,7 @@ use super::read_profile::{absent, profile};
 use super::read_spectrum::{SHARE, held, spectrum};
 use crate::error::Result;
 use crate::medium::Role;
-use crate::spectrum::Spectrum;
+use crate::spectrum::{Spectrum, fine_grid};
 
 /// The constituent, and warnings about what its tables leave open; `height` is that of the shell, m.
 pub fn constituent(raw: &Raw, height: f64) -> Result<(Substance, Vec<String>)> {
@@ -40,8 +40,20 @@ pub fn constituent(raw: &Raw, height: f64) -> Result<(Substance, Vec<String>)> {
         optics,
         profile,
     };
+    refuse_overflow(raw, &substance, height)?;
     let warnings = warnings(&substance, height);
     Ok((substance, warnings))
+}
+
+/// Numbers can each be fine and their product be beyond all numbers.
+fn refuse_overflow(raw: &Raw, substance: &Substance, height: f64) -> Result<()> {
+    let column = substance.profile.column(0.0, height);
+    let medium = substance.at(&fine_grid());
+    let fits = |v: &f64| *v >= 0.0 && v.is_finite() && (v * column).is_finite();
+    if medium.scattering.iter().chain(&medium.absorption).all(fits) {
+        return Ok(());
+    }
+    Err(raw.refuse("its optical depth is beyond all numbers"))
 }
 
 fn optics(raw: &Raw, column: f64) -> Result<Optics> {

@@ -5,7 +5,7 @@ use super::raw::Raw;
 use super::read_constituent::constituent;
 use super::read_spectrum::{IRRADIANCE, SHARE, held, spectrum, table};
 use crate::error::Result;
-use crate::spectrum::{OBSERVER_RANGE, Spectrum, planck_law};
+use crate::spectrum::{OBSERVER_RANGE, Spectrum, fine_grid, planck_law};
 use std::f64::consts::PI;
 
 /// Astronomical unit, m (IAU 2012 Resolution B2, exact).
@@ -26,6 +26,10 @@ pub fn planet(raw: &Raw) -> Result<Planet> {
     }
     let star_raw = raw.need("star")?;
     let star = star(&star_raw)?;
+    let lit = fine_grid().iter().map(|&w| star.irradiance.at(w)).sum::<f64>();
+    if !(lit > 0.0 && lit.is_finite()) {
+        return Err(star_raw.refuse("its light between 380 and 780 nm is nothing or beyond all numbers"));
+    }
 
     let mut warnings: Vec<String> = held("ground albedo", &ground_albedo).into_iter().collect();
     warnings.extend(held("spectrum of the star", &star.irradiance));
@@ -72,7 +76,10 @@ fn star(raw: &Raw) -> Result<Star> {
         "angular_radius_deg",
         "limb_darkening",
     ])?;
-    let distance = raw.need("distance_au")?.positive()? * ASTRONOMICAL_UNIT;
+    let distance = raw
+        .need("distance_au")?
+        .number_that("greater than 0, and 1e6 at the most", |v| v > 0.0 && v <= 1e6)?
+        * ASTRONOMICAL_UNIT;
     let angular_radius = angular_radius(raw, distance)?;
     let limb_darkening = raw.get("limb_darkening")?;
     Ok(Star {
@@ -118,9 +125,6 @@ fn irradiance(raw: &Raw, distance: f64, angular_radius: f64) -> Result<Spectrum>
         given.only(&["wavelengths_nm", IRRADIANCE.column])?;
         table(&given, IRRADIANCE.column, IRRADIANCE.bounds, IRRADIANCE.holds)?
     };
-    if spectrum.range().1 <= 0.0 {
-        return Err(given.refuse("the star is dark"));
-    }
     let measured_at = raw.need("spectrum_at_au")?.positive()?;
     let ratio = measured_at * ASTRONOMICAL_UNIT / distance;
     Ok(spectrum.scaled(ratio * ratio))

@@ -45,7 +45,7 @@ impl Observer {
     }
 
     /// Σ f·(x̄, ȳ, z̄)·1 nm over 360–830 nm: XYZ in the unit of f times nm. Times [`LUMINOUS_EFFICACY`] it is
-    /// photometric. ASTM E308 differs by its treatment of ends only (2e-6 relative at 1 nm).
+    /// photometric. ASTM E308 in its practice range stops at 780 nm: 2e-6 less X for a white, else the same.
     pub fn xyz(&self, f: impl Fn(f64) -> f64) -> [f64; 3] {
         self.xyz_between(OBSERVER_RANGE.0, OBSERVER_RANGE.1, f)
     }

@@ -1,0 +1,213 @@
+//! `tyndall colour`: spectra to XYZ, chromaticity, linear RGB and CIELAB.
+
+use super::colour_input::{Named, black_body, read};
+use super::text::{number, print};
+use crate::error::Result;
+use crate::spectrum::*;
+use std::path::PathBuf;
+
+/// Spectra as CSV to XYZ, xy, linear RGB and CIELAB.
+///
+/// XYZ = k Σ spectrum · (x̄, ȳ, z̄) · 1 nm over 360–830 nm with the CIE 1931 2° observer; the spectrum is linear
+/// between its samples, end values are held. (ASTM E308 in its practice range stops at 780 nm: 2e-6 less X for
+/// a white.)
+#[derive(clap::Args, Debug)]
+#[command(before_help = "Example: tyndall colour --blackbody 5778
+         tyndall colour spectra.csv --scale photometric --json")]
+pub struct Args {
+    /// CSV with a column wavelength_nm and one column a spectrum; standard input without it or with `-`
+    pub file: Option<PathBuf>,
+    /// A black body of this temperature in K (W/(m² sr nm)) instead of a file; repeatable
+    #[arg(long, value_name = "KELVIN")]
+    pub blackbody: Vec<f64>,
+    /// What XYZ count in
+    #[arg(long, value_enum, default_value = "relative")]
+    pub scale: Scale,
+    /// The Y that is white: RGB (1, 1, 1) and L* = 100 [default: 100 if relative, 1 if photometric]
+    #[arg(long, value_name = "Y")]
+    pub white_y: Option<f64>,
+    /// Linear RGB space, its own white, no adaptation
+    #[arg(long, value_enum, default_value = "srgb")]
+    pub colour_space: ColourSpace,
+    /// Add the ΔE2000 of each spectrum from the first (D65, both scaled so that the first has Y = 0.18)
+    #[arg(long)]
+    pub difference: bool,
+    /// Print the 1 nm spectra that are summed, and no colours
+    #[arg(long)]
+    pub spectra: bool,
+    /// Print the matrices between XYZ and the colour space, and no colours
+    #[arg(long)]
+    pub matrix: bool,
+    /// JSON instead of CSV
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Units of XYZ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Scale {
+    /// k = 100 / Σȳ: the equal-energy spectrum of value 1 has Y = 100
+    Relative,
+    /// k = 683 lm/W: cd/m² for W/(m² sr nm), lx for W/(m² nm)
+    Photometric,
+}
+
+impl Scale {
+    fn k(self) -> f64 {
+        match self {
+            Scale::Relative => 100.0 / y_bar_sum(),
+            Scale::Photometric => LUMINOUS_EFFICACY,
+        }
+    }
+
+    fn default_white(self) -> f64 {
+        match self {
+            Scale::Relative => 100.0,
+            Scale::Photometric => 1.0,
+        }
+    }
+}
+
+/// The colours of one spectrum.
+struct Colour {
+    name: String,
+    xyz: [f64; 3],
+    xy: [f64; 2],
+    rgb: [f64; 3],
+    lab: Lab,
+    difference: Option<f64>,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<()> {
+    if args.matrix {
+        return print(&matrices(args));
+    }
+    let spectra = if args.blackbody.is_empty() {
+        read(args.file.as_deref())?
+    } else if args.file.is_some() {
+        return Err(crate::Error::Argument("give a file or --blackbody, not both".into()));
+    } else {
+        args.blackbody.iter().map(|&t| black_body(t)).collect::<Result<_>>()?
+    };
+    if let Some(white) = args.white_y.filter(|w| !(w.is_finite() && *w > 0.0)) {
+        return Err(crate::Error::Argument(format!("--white-y {white}: must be greater than 0")));
+    }
+    warn_of_held_ends(&spectra);
+    if args.spectra {
+        return print(&spectra_csv(&spectra));
+    }
+    let colours = colours(args, &spectra);
+    print(&if args.json { as_json(args, &colours) } else { as_csv(args, &colours) })
+}
+
+fn warn_of_held_ends(spectra: &[Named]) {
+    let (from, to) = OBSERVER_RANGE;
+    for s in spectra {
+        if let Some((first, last)) = s.spectrum.held_outside(from as f64, to as f64) {
+            eprintln!(
+                "warning: {} covers {first}–{last} nm; its end values are held over {from}–{to} nm",
+                s.name
+            );
+        }
+    }
+}
+
+fn colours(args: &Args, spectra: &[Named]) -> Vec<Colour> {
+    let white_y = args.white_y.unwrap_or(args.scale.default_white());
+    let to_rgb = args.colour_space.from_xyz();
+    let xyz_of = |s: &Named| Observer::cie1931().xyz_of(&s.spectrum).map(|v| v * args.scale.k());
+    let first = xyz_of(&spectra[0]);
+    let colour = |s: &Named| {
+        let xyz = xyz_of(s);
+        let relative = xyz.map(|v| v / white_y);
+        Colour {
+            name: s.name.clone(),
+            xyz,
+            xy: chromaticity(xyz),
+            rgb: multiply(&to_rgb, relative),
+            lab: lab_of_xyz(relative, D65),
+            difference: args.difference.then(|| delta_e_2000_scaled(first, xyz)),
+        }
+    };
+    spectra.iter().map(colour).collect()
+}
+
+fn as_csv(args: &Args, colours: &[Colour]) -> String {
+    let mut out = String::from("name,X,Y,Z,x,y,R,G,B,L*,a*,b*");
+    out.push_str(if args.difference { ",delta_e_2000\n" } else { "\n" });
+    for c in colours {
+        let lab = [c.lab.l, c.lab.a, c.lab.b];
+        let values = c.xyz.iter().chain(&c.xy).chain(&c.rgb).chain(&lab).chain(&c.difference);
+        out.push_str(&csv_field(&c.name));
+        values.for_each(|v| out.push_str(&format!(",{}", number(*v))));
+        out.push('\n');
+    }
+    out
+}
+
+fn as_json(args: &Args, colours: &[Colour]) -> String {
+    let one = |c: &Colour| {
+        let mut object = serde_json::json!({
+            "name": c.name, "xyz": c.xyz, "xy": c.xy, "rgb": c.rgb, "lab": [c.lab.l, c.lab.a, c.lab.b],
+        });
+        if let Some(d) = c.difference {
+            object["delta_e_2000"] = d.into();
+        }
+        object
+    };
+    let report = serde_json::json!({
+        "observer": "CIE 1931 2 degrees, 1 nm, 360-830 nm, plain summation",
+        "k": args.scale.k(),
+        "white_y": args.white_y.unwrap_or(args.scale.default_white()),
+        "colour_space": args.colour_space.name(),
+        "lab_white": "D65",
+        "colours": colours.iter().map(one).collect::<Vec<_>>(),
+    });
+    format!("{report:#}\n")
+}
+
+fn matrices(args: &Args) -> String {
+    let (from, to) = (args.colour_space.from_xyz(), args.colour_space.to_xyz());
+    if args.json {
+        let report = serde_json::json!({
+            "colour_space": args.colour_space.name(),
+            "chromaticities": args.colour_space.chromaticities(),
+            "from_xyz": from,
+            "to_xyz": to,
+        });
+        return format!("{report:#}\n");
+    }
+    let mut out = String::from("matrix,row,1,2,3\n");
+    for (name, matrix) in [("from_xyz", from), ("to_xyz", to)] {
+        for (k, row) in matrix.iter().enumerate() {
+            out.push_str(&format!(
+                "{name},{},{},{},{}\n",
+                k + 1,
+                number(row[0]),
+                number(row[1]),
+                number(row[2])
+            ));
+        }
+    }
+    out
+}
+
+fn spectra_csv(spectra: &[Named]) -> String {
+    let mut out = String::from("wavelength_nm");
+    spectra.iter().for_each(|s| out.push_str(&format!(",{}", csv_field(&s.name))));
+    for w in OBSERVER_RANGE.0..=OBSERVER_RANGE.1 {
+        out.push_str(&format!("\n{w}"));
+        spectra.iter().for_each(|s| out.push_str(&format!(",{}", s.spectrum.at(w as f64))));
+    }
+    out.push('\n');
+    out
+}
+
+/// A name as a CSV field, quoted where it must be.
+fn csv_field(name: &str) -> String {
+    if name.contains([',', '"', '\n']) {
+        return format!("\"{}\"", name.replace('"', "\"\""));
+    }
+    name.to_string()
+}

@@ -1,0 +1,126 @@
+//! `tyndall presets`: what is shipped, what a preset means, and whether files are presets.
+
+use super::presets_show::{as_json, as_text};
+use super::text::print;
+use crate::error::{Error, Result};
+use crate::preset;
+use std::path::{Path, PathBuf};
+
+/// List, show and check presets of planets.
+#[derive(clap::Args, Debug)]
+#[command(before_help = "Example: tyndall presets show earth
+         tyndall presets check my-planet.json")]
+pub struct Args {
+    #[command(subcommand)]
+    pub action: Option<Action>,
+}
+
+/// What to do with presets; `list` without any.
+#[derive(clap::Subcommand, Debug)]
+pub enum Action {
+    /// Names and descriptions of the shipped presets
+    List {
+        /// JSON instead of a table
+        #[arg(long)]
+        json: bool,
+    },
+    /// A preset in SI and the physics it implies: optical depths, scale heights, asymmetry
+    #[command(
+        before_help = "Example: tyndall presets show earth --set constituents.aerosol.density_factor=10"
+    )]
+    Show {
+        /// Shipped name or path of a JSON file
+        preset: String,
+        /// Change a value before it is read; repeatable
+        #[arg(long, value_name = "path.to.key=value")]
+        set: Vec<String>,
+        /// Wavelengths in nm
+        #[arg(long, value_delimiter = ',', default_values_t = [400.0, 440.0, 550.0, 680.0, 750.0])]
+        wavelengths: Vec<f64>,
+        /// JSON with the whole resolved preset
+        #[arg(long)]
+        json: bool,
+    },
+    /// Read preset files (folders: their *.json) and say for each whether it holds; exit code 2 if one does not
+    #[command(before_help = "Example: tyndall presets check my-planets/")]
+    Check {
+        /// Files or folders; the shipped presets without any
+        paths: Vec<PathBuf>,
+    },
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<()> {
+    match &args.action {
+        None => list(false),
+        Some(Action::List { json }) => list(*json),
+        Some(Action::Show { preset, set, wavelengths, json }) => show(preset, set, wavelengths, *json),
+        Some(Action::Check { paths }) => check(paths),
+    }
+}
+
+fn list(json: bool) -> Result<()> {
+    let shipped = preset::shipped();
+    if json {
+        let entry = |(name, description): &(&str, String)| serde_json::json!({"name": name, "description": description});
+        let list: Vec<_> = shipped.iter().map(entry).collect();
+        return print(&format!("{:#}\n", serde_json::Value::Array(list)));
+    }
+    let width = shipped.iter().map(|p| p.0.len()).max().unwrap_or(0);
+    print(&shipped.iter().map(|(name, text)| format!("{name:width$}  {text}\n")).collect::<String>())
+}
+
+fn show(name: &str, set: &[String], wavelengths: &[f64], json: bool) -> Result<()> {
+    if let Some(w) = wavelengths.iter().find(|w| !(200.0..=4000.0).contains(*w)) {
+        return Err(Error::Argument(format!("--wavelengths {w}: must be between 200 and 4000 nm")));
+    }
+    let planet = preset::load(name, set)?;
+    print(&if json { as_json(&planet, wavelengths) } else { as_text(&planet, wavelengths) })
+}
+
+fn check(paths: &[PathBuf]) -> Result<()> {
+    let mut names: Vec<String> = Vec::new();
+    for path in paths {
+        names.extend(files(path)?);
+    }
+    if paths.is_empty() {
+        names.extend(preset::shipped_names().map(str::to_string));
+    }
+    let mut bad = 0;
+    for name in &names {
+        match preset::load(name, &[]) {
+            Ok(planet) => {
+                print(&format!("ok   {name}: {} constituents\n", planet.constituents.len()))?;
+                planet.warnings.iter().for_each(|w| eprintln!("warning: {name}: {w}"));
+            }
+            Err(error) => {
+                bad += 1;
+                print(&format!("bad  {error}\n"))?;
+            }
+        }
+    }
+    match bad {
+        0 => Ok(()),
+        _ => Err(Error::Argument(format!("{bad} of {} presets do not hold", names.len()))),
+    }
+}
+
+/// A file itself, or the JSON files of a folder in the order of their names.
+fn files(path: &Path) -> Result<Vec<String>> {
+    if !path.is_dir() {
+        return Ok(vec![path.display().to_string()]);
+    }
+    let entries = std::fs::read_dir(path).map_err(|e| Error::reading(path, e))?;
+    let mut list = Vec::new();
+    for entry in entries {
+        let file = entry.map_err(|e| Error::reading(path, e))?.path();
+        if file.extension().is_some_and(|e| e == "json") {
+            list.push(file.display().to_string());
+        }
+    }
+    if list.is_empty() {
+        return Err(Error::file(path, "no .json file in this folder"));
+    }
+    list.sort();
+    Ok(list)
+}
