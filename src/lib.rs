@@ -28,6 +28,7 @@ pub mod medium;
 pub mod methods;
 pub mod points;
 pub mod preset;
+pub mod quality;
 pub mod sky;
 pub mod spectrum;
 pub mod table;

@@ -1,25 +1,38 @@
 //! Arguments → command → exit code.
 
 use clap::Parser;
-use tyndall::commands::{colour, presets};
+use tyndall::commands::{bake, colour, presets, sample, verify};
 
+/// Offline baker of lookup tables for planetary atmospheres
 #[derive(Parser)]
 #[command(name = "tyndall", version, about)]
+#[command(before_help = "Example: tyndall bake earth && tyndall verify out/earth")]
 enum Command {
+    Bake(Box<bake::Args>),
+    Sample(sample::Args),
+    Verify(verify::Args),
     Colour(colour::Args),
     Presets(presets::Args),
 }
 
 fn main() -> std::process::ExitCode {
-    let result = match Command::parse() {
-        Command::Colour(args) => colour::run(&args),
-        Command::Presets(args) => presets::run(&args),
-    };
+    let command = Command::parse();
+    let result = tyndall::export::interrupt::handle_interrupts().and_then(|()| run(command));
     match result {
         Ok(()) => std::process::ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");
             error.exit_code().into()
         }
+    }
+}
+
+fn run(command: Command) -> tyndall::Result<()> {
+    match command {
+        Command::Bake(args) => bake::run(&args),
+        Command::Sample(args) => sample::run(&args),
+        Command::Verify(args) => verify::run(&args),
+        Command::Colour(args) => colour::run(&args),
+        Command::Presets(args) => presets::run(&args),
     }
 }

@@ -41,15 +41,24 @@ pub fn tables(
 ) -> (Vec<Baked>, Oddities) {
     let mapping = mapping(medium, size).expect("sizes are checked with the arguments");
     let texels = fill(medium, solution, palette, &mapping);
-    let (scattering, oddities) = scattering(texels, solution, palette, &mapping);
-    (
-        vec![
-            scattering,
-            super::extinction::table(medium, solution, palette, LAYOUT, &mapping, EXTINCTION_SIZE, false),
-            ambient(solution, palette, &mapping),
-        ],
-        oddities,
-    )
+    let ambient = ambient(solution, palette, &mapping);
+    finish(medium, solution, palette, &mapping, texels, ambient)
+}
+
+/// Encodes texels (in ray order: gas as RGB and aerosol as luminance, cd/m²) and ambient light (RGB, lx, on an
+/// even sun axis), and adds what depends on the medium alone.
+pub fn finish(
+    medium: &Medium,
+    solution: &Solution,
+    palette: &Palette,
+    mapping: &Elek2010,
+    texels: Vec<[f32; 4]>,
+    ambient: Vec<[f64; 3]>,
+) -> (Vec<Baked>, Oddities) {
+    let (scattering, oddities) = scattering(texels, solution, palette, mapping);
+    let extinction =
+        super::extinction::table(medium, solution, palette, LAYOUT, mapping, EXTINCTION_SIZE, false);
+    (vec![scattering, extinction, irradiance(ambient, mapping)], oddities)
 }
 
 /// The mapping for a medium; none where a size is out of range.
@@ -226,29 +235,32 @@ fn power_of_two(brightest: f64) -> f64 {
     scale
 }
 
-/// Diffuse irradiance of the ground against the sun's height: TA of Algorithm 1.
-fn ambient(solution: &Solution, palette: &Palette, mapping: &Elek2010) -> Baked {
+/// Diffuse irradiance of the ground against the sun's height, RGB in lx: TA of Algorithm 1.
+fn ambient(solution: &Solution, palette: &Palette, mapping: &Elek2010) -> Vec<[f64; 3]> {
     let [altitudes, views, _, azimuths] = mapping.size();
     let long = mapping.resized([altitudes, views, AMBIENT_SIZE, azimuths]).expect("a valid size");
     let rgb = palette.rgb_weights();
-    let values: Vec<[f64; 3]> = (0..AMBIENT_SIZE)
+    (0..AMBIENT_SIZE)
         .map(|k| {
             let light = solution.ground_irradiance(long.mu_s(k));
-            std::array::from_fn(|c| light.iter().zip(&rgb).map(|(l, w)| l * w[c]).sum::<f64>().max(0.0))
+            std::array::from_fn(|c| light.iter().zip(&rgb).map(|(l, w)| l * w[c]).sum())
         })
-        .collect();
+        .collect()
+}
+
+fn irradiance(values: Vec<[f64; 3]>, mapping: &Elek2010) -> Baked {
+    let [altitudes, views, _, azimuths] = mapping.size();
+    let axis_of = mapping.resized([altitudes, views, values.len(), azimuths]).expect("a valid size");
     let scale = power_of_two(values.iter().flatten().fold(0.0, |a: f64, &b| a.max(b)));
-    let sun: Axis = axis(&long.axes()[2]);
+    let sun: Axis = axis(&axis_of.axes()[2]);
     let channel = |c: &str| Channel::new(c, "diffuse irradiance of the ground, linear", "lx");
+    let store = |v: f64| (v.max(0.0) * scale) as f32;
     Baked {
         layout: LAYOUT.into(),
         name: "irradiance".into(),
         axes: vec![sun],
         channels: vec![channel("R"), channel("G"), channel("B")],
         encoding: Encoding::linear(1.0 / scale),
-        texels: values
-            .iter()
-            .map(|v| [(v[0] * scale) as f32, (v[1] * scale) as f32, (v[2] * scale) as f32, 0.0])
-            .collect(),
+        texels: values.iter().map(|v| [store(v[0]), store(v[1]), store(v[2]), 0.0]).collect(),
     }
 }

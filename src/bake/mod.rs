@@ -1,8 +1,16 @@
-//! From a planet to finished tables: solve, choose colours, fill every layout, encode.
+//! From a planet to the bytes of every file: solve, choose colours, fill every layout, encode, report.
 
 pub mod compact;
 pub mod elek2010;
-pub mod extinction;
+mod extinction;
+mod literal;
 pub mod palette;
+mod pictures;
+mod pipeline;
+pub mod report;
+pub mod settings;
 pub mod skies;
+mod spectral;
 pub mod tables;
+
+pub use pipeline::{Product, bake, no_layout};

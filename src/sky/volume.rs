@@ -33,10 +33,6 @@ impl Texels {
         Ok(Texels { values, encodings })
     }
 
-    fn channels(&self) -> usize {
-        self.encodings.len()
-    }
-
     fn decode(&self, stored: [f64; 4]) -> [f64; 4] {
         let mut out = [0.0; 4];
         for (k, e) in self.encodings.iter().enumerate() {
@@ -141,10 +137,6 @@ impl Plane {
             _ => None,
         };
         Ok(Plane { texels: Texels::new(table, atlas)?, size, mapping })
-    }
-
-    pub fn channels(&self) -> usize {
-        self.texels.channels()
     }
 
     /// Decoded values at a row (taken as it is) and a place 0..1 along x.

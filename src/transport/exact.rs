@@ -56,6 +56,42 @@ impl Solution {
         out
     }
 
+    /// [`Solution::sun_transmittance`] of one batch.
+    pub(super) fn sun_transmittance_of(&self, batch: &Batch, r: f64, mu_s: f64) -> Lanes {
+        self.to_sun(batch, r, mu_s, &mut vec![0.0; self.geometry.shells.constituents])
+    }
+
+    /// Light of the ground that arrives at radius `r` along a ray of optical depth `depth` that meets it.
+    pub(super) fn ground_light(
+        &self,
+        batch: &Batch,
+        r: f64,
+        mu: f64,
+        mu_s: f64,
+        nu: f64,
+        depth: Lanes,
+    ) -> Lanes {
+        let view = View { r, mu, mu_s, nu, hits_ground: true };
+        let track = Track::new(&view);
+        (depth * -1.0).exp()
+            * self.ground_radiance(batch, track.mu_s(&view, track.end(self.geometry.shells.edges[0])))
+    }
+
+    /// Scattered light from all directions (∫ I dω) at a radius and sun height.
+    pub(super) fn mean_light(&self, batch: &Batch, r: f64, mu_s: f64) -> Lanes {
+        self.moments(batch, r, mu_s)[0]
+    }
+
+    /// Absorption coefficient at a radius inside a shell, 1/m.
+    pub(super) fn absorption(&self, batch: &Batch, shell: usize, r: f64) -> Lanes {
+        let mut sum = Lanes::ZERO;
+        for c in 0..self.geometry.shells.constituents {
+            let only = batch.optics.extinction[c] - batch.optics.scattering[c];
+            sum += only * self.geometry.shells.density(shell, c, r) as f32;
+        }
+        sum
+    }
+
     /// Diffuse irradiance of the ground, per wavelength, over the solar irradiance: the orders that the ground
     /// sends on, direct sunlight left out (TA of Elek & Kmoch's Algorithm 1).
     pub fn ground_irradiance(&self, mu_s: f64) -> Vec<f64> {
@@ -68,7 +104,7 @@ impl Solution {
     }
 
     /// Ground irradiance, cubic between the nodes of the sun axis.
-    fn diffuse(&self, batch: &Batch, mu_s: f64) -> Lanes {
+    pub(super) fn diffuse(&self, batch: &Batch, mu_s: f64) -> Lanes {
         let (node, t) = self.geometry.axis.locate(mu_s as f32);
         let mut sum = Lanes::ZERO;
         if t >= 0.0 {

@@ -6,6 +6,7 @@
 //! Knows no preset, file or colour. All radiances are per unit solar irradiance normal to the beam, 1/sr.
 
 mod azimuth;
+pub mod balance;
 
 mod column;
 

@@ -1,0 +1,112 @@
+//! The quality report of a bake: its tables against direct integration, and what the solver says of itself.
+
+use super::palette::{ColourError, Palette};
+use crate::medium::Medium;
+use crate::points::Point;
+use crate::quality::{Distribution, REGIONS, colour_error, digits, relative_errors, views};
+use crate::sky::{AerosolPhase, Component, Sky};
+use crate::spectrum::multiply;
+use crate::transport::balance::balance;
+use crate::transport::solve::{Orders, Solution};
+use crate::transport::view::View;
+use rayon::prelude::*;
+use serde_json::{Map, Value, json};
+
+/// Views a region: enough for a 95th percentile, few enough to take a small share of the bake.
+const VIEWS: usize = 40;
+/// Radiance over solar irradiance below which relative errors mean nothing, 1/sr: far below starlight.
+pub const DARK: f64 = 1e-12;
+
+/// A region's views with their true radiance, per wavelength, 1/sr.
+pub struct Truth {
+    pub region: &'static str,
+    pub views: Vec<(Point, Vec<f64>)>,
+}
+
+/// The truth of a solution at the report's views (total light).
+pub fn truths(medium: &Medium, solution: &Solution) -> Vec<Truth> {
+    let all: Vec<usize> = (0..medium.constituents.len()).collect();
+    let radiance = |p: &Point| match View::enter(p, medium.ground_radius, medium.top_radius) {
+        Some(view) => {
+            let r = solution.radiance(&view, &all);
+            r.scattering.iter().zip(&r.ground).map(|(s, g)| s + g).collect()
+        }
+        None => vec![0.0; medium.wavelengths_nm.len()],
+    };
+    REGIONS
+        .iter()
+        .map(|region| {
+            let points = views(region, VIEWS, 1, medium.ground_radius, medium.top_radius);
+            Truth { region: region.name, views: points.par_iter().map(|p| (*p, radiance(p))).collect() }
+        })
+        .collect()
+}
+
+/// Errors of the compact layout, by region: relative radiance per wavelength, and as RGB.
+pub fn compact(sky: &Sky, palette: &Palette, truths: &[Truth]) -> Value {
+    let mut out = Map::new();
+    for truth in truths {
+        let (mut spectral, mut colour) = (Vec::new(), Vec::new());
+        for (point, light) in &truth.views {
+            let found = sky.radiance(point, Component::Total, AerosolPhase::Preset);
+            let four: Vec<f64> = palette.four.iter().map(|&w| light[w]).collect();
+            spectral.extend(relative_errors(&found, &four, DARK));
+            if light.iter().any(|&v| v > DARK) {
+                colour.push(colour_error(sky.rgb(point, Component::Total), rgb(palette, light)));
+            }
+        }
+        let pair = json!({ "per_wavelength": Distribution::of(spectral).json(), "rgb": Distribution::of(colour).json() });
+        out.insert(truth.region.to_string(), pair);
+    }
+    Value::Object(out)
+}
+
+/// Errors of the paper's layout as RGB, by region, against a medium's truth.
+pub fn elek2010(sky: &Sky, palette: &Palette, truths: &[Truth], phase: AerosolPhase) -> Value {
+    let mut out = Map::new();
+    for truth in truths {
+        let lit = truth.views.iter().filter(|(_, light)| light.iter().any(|&v| v > DARK));
+        let errors = lit.map(|(point, light)| {
+            let found = sky.radiance(point, Component::Total, phase);
+            colour_error([found[0], found[1], found[2]], rgb(palette, light))
+        });
+        out.insert(truth.region.to_string(), Distribution::of(errors.collect()).json());
+    }
+    Value::Object(out)
+}
+
+/// Linear RGB over the star's illuminance.
+fn rgb(palette: &Palette, light: &[f64]) -> [f64; 3] {
+    let mut xyz = [0.0; 3];
+    for (v, w) in light.iter().zip(&palette.weights) {
+        for c in 0..3 {
+            xyz[c] += v * w[c] / palette.star_xyz[1];
+        }
+    }
+    multiply(&palette.space.from_xyz(), xyz)
+}
+
+/// What the solver says of one medium: orders, residual, energy balance.
+pub fn solver(medium: &Medium, solution: &Solution) -> Value {
+    let residual = solution.report.residual.iter().copied().fold(0.0, f64::max);
+    let mut out = Map::new();
+    match solution.orders {
+        Orders::Converged { .. } => {
+            out.insert("orders".into(), json!("converged"));
+            out.insert("applications".into(), json!(solution.report.applications));
+            let errors = balance(solution, medium).iter().map(|b| b.error()).collect::<Vec<_>>();
+            let worst = errors.iter().copied().fold(0.0, |a: f64, e| if e.abs() > a.abs() { e } else { a });
+            out.insert("energy_balance_error".into(), json!(digits(worst)));
+        }
+        Orders::First(n) => {
+            out.insert("orders".into(), json!(n));
+        }
+    }
+    out.insert("residual".into(), json!(digits(residual)));
+    Value::Object(out)
+}
+
+/// ΔE2000 of a colour fit on skies held out of it.
+pub fn colour(error: &ColourError) -> Value {
+    json!({ "median": digits(error.median), "p95": digits(error.p95), "max": digits(error.worst) })
+}

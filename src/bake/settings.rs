@@ -1,0 +1,88 @@
+//! What a bake is asked for, apart from the planet: everything that decides its bytes.
+
+use super::compact::Sizes;
+use crate::spectrum::ColourSpace;
+use crate::table::Elek2010;
+use crate::transport::solve::Orders;
+use serde_json::{Value, json};
+
+/// A way to store a sky.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
+pub enum Layout {
+    Elek2010,
+    Compact,
+}
+
+impl Layout {
+    pub fn name(self) -> &'static str {
+        match self {
+            Layout::Elek2010 => super::elek2010::LAYOUT,
+            Layout::Compact => super::compact::LAYOUT,
+        }
+    }
+}
+
+/// Who sums the orders for the paper's layout.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Solver {
+    /// Angular moments of the radiance.
+    Moments,
+    /// Algorithm 1 as it is written, with this many samples an integral.
+    Literal { samples: usize },
+}
+
+/// Settings of a bake.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    pub layouts: Vec<Layout>,
+    pub elek2010_size: [usize; 4],
+    pub compact_sizes: Sizes,
+    pub orders: Orders,
+    pub wavelengths_nm: Vec<f64>,
+    pub space: ColourSpace,
+    pub solver: Solver,
+    pub spectral: bool,
+}
+
+/// Relative change that a converged solution may still make: well below what tables lose.
+pub const TOLERANCE: f64 = 1e-3;
+/// Wavelengths of a bake unless others are asked for, as in the paper.
+pub const WAVELENGTHS: usize = 15;
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            layouts: vec![Layout::Elek2010, Layout::Compact],
+            elek2010_size: Elek2010::PAPER_SIZE,
+            compact_sizes: Sizes::default(),
+            orders: Orders::Converged { tolerance: TOLERANCE },
+            wavelengths_nm: crate::spectrum::grid(WAVELENGTHS),
+            space: ColourSpace::Srgb,
+            solver: Solver::Moments,
+            spectral: false,
+        }
+    }
+}
+
+impl Settings {
+    /// For the manifest.
+    pub fn json(&self) -> Value {
+        let orders = match self.orders {
+            Orders::Converged { tolerance } => json!({ "converged_to": tolerance }),
+            Orders::First(n) => json!({ "first": n }),
+        };
+        let solver = match self.solver {
+            Solver::Moments => json!("moments"),
+            Solver::Literal { samples } => json!({ "literal": { "samples": samples } }),
+        };
+        json!({
+            "layouts": self.layouts.iter().map(|l| l.name()).collect::<Vec<_>>(),
+            "elek2010_size": self.elek2010_size,
+            "compact_single_size": self.compact_sizes.single,
+            "compact_multiple_size": self.compact_sizes.multiple,
+            "orders": orders,
+            "solver": solver,
+            "spectral": self.spectral,
+        })
+    }
+}

@@ -1,0 +1,240 @@
+//! `tyndall bake`: presets in, folders of tables out.
+
+use super::machine::{IsaChoice, orders, wavelengths, with_threads};
+use crate::bake::compact::Sizes;
+use crate::bake::settings::{Layout, Settings, Solver, TOLERANCE};
+use crate::bake::{Product, bake};
+use crate::error::{Error, Result};
+use crate::export::staging::Staging;
+use crate::preset::{self, Planet};
+use crate::spectrum::ColourSpace;
+use crate::table::Elek2010;
+use crate::transport::solve::Orders;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
+use std::io::IsTerminal;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// Bake the lookup tables of planets into folders of EXR files with a bake.json
+#[derive(clap::Args, Debug)]
+#[command(before_help = "Example: tyndall bake earth --layout compact --out out")]
+pub struct Args {
+    /// Presets by name (see `tyndall presets`) or paths of JSON files
+    #[arg(required = true, value_name = "PRESET")]
+    presets: Vec<String>,
+    /// Folder that gets a folder for each preset
+    #[arg(long, default_value = "out", value_name = "FOLDER")]
+    out: PathBuf,
+    /// Layouts to write, comma-separated
+    #[arg(long, value_delimiter = ',', value_enum, default_values_t = [Layout::Elek2010, Layout::Compact])]
+    layout: Vec<Layout>,
+    /// Texels: altitude x view x sun x azimuth (of elek2010), or LAYOUT=AxBxCxD with LAYOUT elek2010, compact
+    /// (its table of multiple scattering) or compact-single; repeatable
+    #[arg(long, value_name = "SIZE")]
+    size: Vec<String>,
+    /// Orders of scattering to sum: auto (until converged) or a number
+    #[arg(long, default_value = "auto", value_parser = |t: &str| orders(t, TOLERANCE))]
+    orders: Orders,
+    /// Wavelengths: auto (15 even ones), a number of even ones, or a list in nm
+    #[arg(long, default_value = "auto", value_name = "auto|N|LIST")]
+    wavelengths: String,
+    /// Who sums the orders of elek2010: moments, or Algorithm 1 of the paper taken literally (slow)
+    #[arg(long, default_value = "moments", value_parser = ["moments", "literal"])]
+    solver: String,
+    /// Primaries of RGB tables, always linear
+    #[arg(long, default_value = "srgb", value_parser = space)]
+    colour_space: ColourSpace,
+    /// Write spectral EXR files too (large)
+    #[arg(long)]
+    spectral: bool,
+    /// Set a value of the preset, e.g. constituents.aerosol.density_factor=10; repeatable
+    #[arg(long, value_name = "PATH.TO.KEY=VALUE")]
+    set: Vec<String>,
+    /// Threads [default: all]; the bytes do not depend on them
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    /// Instruction set of the hot loops; the bytes do not depend on it
+    #[arg(long, value_enum, default_value = "auto")]
+    isa: IsaChoice,
+    /// Print the time of each stage
+    #[arg(long)]
+    perf: bool,
+    /// Print the outcome as JSON
+    #[arg(long)]
+    json: bool,
+    /// No talk on stderr but errors
+    #[arg(long)]
+    quiet: bool,
+}
+
+fn space(name: &str) -> std::result::Result<ColourSpace, String> {
+    let all = ColourSpace::ALL;
+    let names: Vec<&str> = all.iter().map(|s| s.name()).collect();
+    all.into_iter().find(|s| s.name() == name).ok_or(format!("expected one of {}", names.join(", ")))
+}
+
+/// Bakes every preset; the first failure ends the run, with the bakes before it in place.
+pub fn run(args: &Args) -> Result<()> {
+    args.isa.apply()?;
+    let settings = settings(args)?;
+    let planets: Vec<Planet> =
+        args.presets.iter().map(|p| preset::load(p, &args.set)).collect::<Result<_>>()?;
+    for planet in &planets {
+        let mut clock = Clock::new(args);
+        let staging = Staging::begin(&args.out.join(&planet.name))?;
+        let product =
+            with_threads(args.threads, || bake(planet, &settings, &mut |stage| clock.stage(stage)))??;
+        clock.stage("write");
+        for (file, bytes) in &product.files {
+            staging.write(file, bytes)?;
+        }
+        staging.commit()?;
+        let stages = clock.end();
+        tell(args, planet, &product, &stages);
+    }
+    Ok(())
+}
+
+fn settings(args: &Args) -> Result<Settings> {
+    let mut layouts = args.layout.clone();
+    layouts.sort();
+    layouts.dedup();
+    let wavelengths_nm = wavelengths(&args.wavelengths)
+        .map_err(|reason| Error::Argument(format!("--wavelengths {}: {reason}", args.wavelengths)))?;
+    let literal = args.solver == "literal";
+    let mut settings = Settings {
+        layouts,
+        orders: args.orders,
+        wavelengths_nm,
+        space: args.colour_space,
+        solver: if literal { Solver::Literal { samples: 30 } } else { Solver::Moments },
+        spectral: args.spectral,
+        ..Settings::default()
+    };
+    if literal && matches!(args.orders, Orders::Converged { .. }) {
+        return Err(Error::Argument("--solver literal sums orders one by one: give --orders N".into()));
+    }
+    for text in &args.size {
+        let (name, size) = text.split_once('=').unwrap_or((Layout::Elek2010.name(), text));
+        let size = parse_size(size).map_err(|reason| Error::Argument(format!("--size {text}: {reason}")))?;
+        match name {
+            "elek2010" => settings.elek2010_size = size,
+            "compact" => settings.compact_sizes = Sizes { multiple: size, ..settings.compact_sizes },
+            "compact-single" => settings.compact_sizes = Sizes { single: size, ..settings.compact_sizes },
+            other => return Err(Error::Argument(format!("--size {text}: {other} is no layout"))),
+        }
+    }
+    Ok(settings)
+}
+
+/// Texels that a table may have: 256 million floats of four channels are four gigabytes.
+const MOST_TEXELS: usize = 1 << 26;
+
+fn parse_size(text: &str) -> std::result::Result<[usize; 4], String> {
+    let parts: Vec<usize> = text
+        .split('x')
+        .map(|p| p.parse().map_err(|_| format!("`{p}` is not a number")))
+        .collect::<std::result::Result<_, String>>()?;
+    let size: [usize; 4] =
+        parts.try_into().map_err(|_| "expected four numbers, e.g. 32x128x32x8".to_string())?;
+    let texels = size.iter().try_fold(1usize, |n, &s| n.checked_mul(s)).filter(|&n| n <= MOST_TEXELS);
+    if texels.is_none() {
+        return Err(format!("more than {MOST_TEXELS} texels"));
+    }
+    Elek2010::new(1.0, 2.0, size).ok_or("every size is at least 2, that of the view even".to_string())?;
+    Ok(size)
+}
+
+/// Times the stages and shows them as they come.
+struct Clock {
+    bar: ProgressBar,
+    lines: bool,
+    start: Instant,
+    stages: Vec<(String, Duration, Duration)>,
+    current: Option<(String, Instant, Duration)>,
+}
+
+impl Clock {
+    fn new(args: &Args) -> Self {
+        let terminal = std::io::stderr().is_terminal() && !args.quiet;
+        let bar = if terminal { ProgressBar::new_spinner() } else { ProgressBar::hidden() };
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} {elapsed}") {
+            bar.set_style(style);
+        }
+        Clock { bar, lines: false, start: Instant::now(), stages: Vec::new(), current: None }
+    }
+
+    fn stage(&mut self, name: &str) {
+        self.close();
+        self.bar.set_message(name.to_string());
+        self.bar.tick();
+        self.current = Some((name.to_string(), Instant::now(), cpu_time()));
+    }
+
+    fn close(&mut self) {
+        if let Some((name, wall, cpu)) = self.current.take() {
+            self.stages.push((name, wall.elapsed(), cpu_time().saturating_sub(cpu)));
+        }
+    }
+
+    fn end(mut self) -> Vec<(String, Duration, Duration)> {
+        self.close();
+        self.bar.finish_and_clear();
+        self.lines = true;
+        let all = self.stages.iter().map(|s| s.2).sum();
+        self.stages.push(("all".into(), self.start.elapsed(), all));
+        self.stages
+    }
+}
+
+/// Processor time of this process so far, all threads; zero where the system does not tell.
+fn cpu_time() -> Duration {
+    #[cfg(target_os = "linux")]
+    {
+        let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+        Duration::new(time.tv_sec.max(0) as u64, time.tv_nsec.max(0) as u32)
+    }
+    #[cfg(not(target_os = "linux"))]
+    Duration::ZERO
+}
+
+fn tell(args: &Args, planet: &Planet, product: &Product, stages: &[(String, Duration, Duration)]) {
+    let folder = args.out.join(&planet.name);
+    let bytes: usize = product.files.iter().map(|f| f.1.len()).sum();
+    if args.json {
+        let seconds = |d: &Duration| (d.as_secs_f64() * 1e4).round() / 1e4;
+        let perf: Vec<_> = stages
+            .iter()
+            .map(|(n, w, c)| json!({ "stage": n, "wall_s": seconds(w), "cpu_s": seconds(c) }))
+            .collect();
+        println!(
+            "{}",
+            json!({ "preset": planet.name, "folder": folder, "bytes": bytes, "warnings": product.manifest.warnings,
+                    "quality": product.manifest.quality, "perf": perf })
+        );
+        return;
+    }
+    println!("{}: {} files, {:.1} MB", folder.display(), product.files.len(), bytes as f64 / 1e6);
+    if args.perf {
+        for (name, wall, cpu) in stages {
+            println!("  {name:<22} {:7.3} s wall {:7.3} s CPU", wall.as_secs_f64(), cpu.as_secs_f64());
+        }
+        if let Some(peak) = peak_memory() {
+            println!("  peak memory {:.0} MB", peak as f64 / 1e6);
+        }
+    }
+    if !args.quiet {
+        for warning in &product.manifest.warnings {
+            eprintln!("warning: {}: {warning}", planet.name);
+        }
+    }
+}
+
+/// Largest resident size of this process, bytes.
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
+    let kilobytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kilobytes * 1024)
+}

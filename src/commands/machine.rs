@@ -1,0 +1,83 @@
+//! Arguments about the machine and the run, shared by commands: threads, instruction set, wavelengths, orders.
+
+use crate::error::{Error, Result};
+use crate::isa::Isa;
+use crate::transport::solve::Orders;
+
+/// Which instruction set the hot loops use; the bytes are the same for all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum IsaChoice {
+    Auto,
+    Baseline,
+    Avx2,
+    Avx512,
+}
+
+impl IsaChoice {
+    pub fn apply(self) -> Result<()> {
+        let isa = match self {
+            IsaChoice::Auto => Isa::detect(),
+            IsaChoice::Baseline => Isa::Baseline,
+            IsaChoice::Avx2 => Isa::Avx2,
+            IsaChoice::Avx512 => Isa::Avx512,
+        };
+        if isa.choose() {
+            return Ok(());
+        }
+        Err(Error::Argument(format!("--isa {isa:?}: this machine has {:?} at most", Isa::detect())))
+    }
+}
+
+/// Runs with a number of threads, all of the machine's where none is given.
+pub fn with_threads<R: Send>(threads: Option<usize>, work: impl FnOnce() -> R + Send) -> Result<R> {
+    match threads {
+        None => Ok(work()),
+        Some(0) => Err(Error::Argument("--threads 0: at least one is needed".into())),
+        Some(n) => {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
+            Ok(pool.map_err(|e| Error::Argument(format!("--threads {n}: {e}")))?.install(work))
+        }
+    }
+}
+
+/// `auto`, a number of even samples, or a list of nm.
+pub fn wavelengths(text: &str) -> std::result::Result<Vec<f64>, String> {
+    let most = 400;
+    if text == "auto" {
+        return Ok(crate::spectrum::grid(crate::bake::settings::WAVELENGTHS));
+    }
+    if let Ok(n) = text.parse::<usize>()
+        && n < 100
+    {
+        return if n == 0 {
+            Err("at least one wavelength is needed".into())
+        } else {
+            Ok(crate::spectrum::grid(n))
+        };
+    }
+    let list: Vec<f64> = text
+        .split(',')
+        .map(|t| t.trim().parse::<f64>().map_err(|_| format!("`{t}` is not a wavelength in nm")))
+        .collect::<std::result::Result<_, _>>()?;
+    if let Some(w) = list.iter().find(|w| !(100.0..=10_000.0).contains(*w)) {
+        return Err(format!("{w} nm is outside 100 to 10000 nm"));
+    }
+    if list.windows(2).any(|w| w[0] >= w[1]) {
+        return Err("wavelengths must rise".into());
+    }
+    if list.len() > most {
+        return Err(format!("more than {most} wavelengths"));
+    }
+    Ok(list)
+}
+
+/// `auto` or a number of orders; `tolerance` is what `auto` converges to.
+pub fn orders(text: &str, tolerance: f64) -> std::result::Result<Orders, String> {
+    if text == "auto" {
+        return Ok(Orders::Converged { tolerance });
+    }
+    match text.parse::<usize>() {
+        Ok(n) if (1..=10_000).contains(&n) => Ok(Orders::First(n)),
+        _ => Err("expected `auto` or a number from 1 to 10000".into()),
+    }
+}

@@ -1,0 +1,175 @@
+//! `tyndall sample`: what baked tables answer at any view, and the truth beside it.
+
+use super::machine::{IsaChoice, orders, wavelengths, with_threads};
+use crate::error::{Error, Result};
+use crate::export::manifest::Manifest;
+use crate::points::{Answer, Point, read_points, write_answers};
+use crate::preset::Planet;
+use crate::sky::{AerosolPhase, Channels, Component, Sky};
+use crate::transport::solve::{Orders, Resolution, Solution};
+use crate::transport::view::View;
+use rayon::prelude::*;
+use std::io::Write;
+use std::path::PathBuf;
+
+/// What baked tables answer at any view, from their files alone; with --exact the solver's own answer
+#[derive(clap::Args, Debug)]
+#[command(before_help = "Example: tyndall sample out/earth --points views.csv --layout compact")]
+pub struct Args {
+    /// Folder of a bake
+    #[arg(value_name = "BAKE")]
+    bake: PathBuf,
+    /// CSV with the columns altitude_m,mu_view,mu_sun,azimuth_deg
+    #[arg(long, value_name = "CSV")]
+    points: PathBuf,
+    /// Layout to read [default: compact where it was baked]
+    #[arg(long)]
+    layout: Option<String>,
+    /// Part of the light
+    #[arg(long, value_enum, default_value = "total")]
+    component: Component,
+    /// Radiance for the preset's star, W/(m² sr nm) or cd/m², instead of over its irradiance or illuminance
+    #[arg(long)]
+    absolute: bool,
+    /// Solve afresh with the bake's physics and integrate directly
+    #[arg(long)]
+    exact: bool,
+    /// With --exact: wavelengths in nm [default: those of the layout, or of the bake]
+    #[arg(long, value_name = "LIST", requires = "exact")]
+    wavelengths: Option<String>,
+    /// With --exact: auto, or the number of orders to sum [default: as baked]
+    #[arg(long, requires = "exact", value_parser = |t: &str| orders(t, EXACT_TOLERANCE))]
+    orders: Option<Orders>,
+    /// Threads [default: all]
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    /// Instruction set of the hot loops
+    #[arg(long, value_enum, default_value = "auto")]
+    isa: IsaChoice,
+}
+
+/// Relative change that the truth may still make.
+const EXACT_TOLERANCE: f64 = 2e-5;
+
+/// Answers all points as CSV on standard output.
+pub fn run(args: &Args) -> Result<()> {
+    args.isa.apply()?;
+    let manifest = Manifest::read(&args.bake)?;
+    let points = read_points(&args.points)?;
+    let planet = Planet::from_resolved(&manifest.preset.resolved)
+        .map_err(|e| Error::file(&args.bake, format!("bake.json: {e}")))?;
+    let mut out = Vec::new();
+    let text = |e| Error::machine("the answer", e);
+    if args.exact {
+        let nm = exact_wavelengths(args, &manifest)?;
+        let light = with_threads(args.threads, || exact(args, &manifest, &planet, &nm, &points))?;
+        spectral(&mut out, args, &planet, &points, &nm, &light).map_err(text)?;
+    } else {
+        let sky = Sky::open(&args.bake, &manifest, &layout(args, &manifest)?)?;
+        let light: Vec<Vec<f64>> =
+            points.iter().map(|p| sky.radiance(p, args.component, AerosolPhase::Preset)).collect();
+        match sky.channels() {
+            Channels::Wavelengths(nm) => {
+                spectral(&mut out, args, &planet, &points, &nm, &light).map_err(text)?
+            }
+            Channels::Rgb => {
+                eprintln!(
+                    "this layout holds colour: answers are linear RGB ({}), {}",
+                    manifest.colour.space,
+                    if args.absolute { "cd/m²" } else { "luminance over the star's illuminance, 1/sr" }
+                );
+                colours(&mut out, args, &manifest, &points, &light).map_err(text)?;
+            }
+        }
+    }
+    std::io::stdout().write_all(&out).map_err(|e| Error::machine("standard output", e))
+}
+
+fn layout(args: &Args, manifest: &Manifest) -> Result<String> {
+    let has = |name: &str| manifest.tables.iter().any(|t| t.layout == name);
+    match &args.layout {
+        Some(name) if has(name) => Ok(name.clone()),
+        Some(name) => Err(Error::Argument(format!("--layout {name}: not in this bake"))),
+        None if has("compact") => Ok("compact".into()),
+        None => match manifest.tables.first() {
+            Some(table) => Ok(table.layout.clone()),
+            None => Err(Error::file(&args.bake, "a bake without tables")),
+        },
+    }
+}
+
+fn exact_wavelengths(args: &Args, manifest: &Manifest) -> Result<Vec<f64>> {
+    if let Some(text) = &args.wavelengths {
+        return wavelengths(text)
+            .map_err(|reason| Error::Argument(format!("--wavelengths {text}: {reason}")));
+    }
+    let four = manifest.constants.get("four_wavelengths_nm").cloned();
+    match layout(args, manifest)?.as_str() {
+        "compact" => Ok(four.unwrap_or_else(|| manifest.wavelengths.nm.clone())),
+        _ => Ok(manifest.wavelengths.nm.clone()),
+    }
+}
+
+/// Radiance over solar irradiance, `[point][wavelength]`.
+fn exact(args: &Args, manifest: &Manifest, planet: &Planet, nm: &[f64], points: &[Point]) -> Vec<Vec<f64>> {
+    let medium = planet.medium(nm);
+    let baked = match manifest.settings["orders"]["first"].as_u64() {
+        Some(n) => Orders::First(n as usize),
+        None => Orders::Converged { tolerance: EXACT_TOLERANCE },
+    };
+    let solution = Solution::new(&medium, &Resolution::EXACT, args.orders.unwrap_or(baked));
+    let all: Vec<usize> = (0..medium.constituents.len()).collect();
+    points
+        .par_iter()
+        .map(|p| match View::enter(p, medium.ground_radius, medium.top_radius) {
+            None => vec![0.0; nm.len()],
+            Some(view) => {
+                let r = solution.radiance(&view, &all);
+                let sum = |(s, g): (&f64, &f64)| match args.component {
+                    Component::Total => s + g,
+                    Component::Scattering => *s,
+                    Component::Ground => *g,
+                };
+                r.scattering.iter().zip(&r.ground).map(sum).collect()
+            }
+        })
+        .collect()
+}
+
+fn spectral(
+    out: &mut Vec<u8>,
+    args: &Args,
+    planet: &Planet,
+    points: &[Point],
+    nm: &[f64],
+    light: &[Vec<f64>],
+) -> std::io::Result<()> {
+    let star: Vec<f64> =
+        nm.iter().map(|&w| if args.absolute { planet.star.irradiance.at(w) } else { 1.0 }).collect();
+    let star = &star;
+    let rows = points.iter().zip(light).flat_map(|(p, values)| {
+        nm.iter().zip(values).zip(star).map(move |((&wavelength_nm, v), s)| {
+            (*p, Answer { wavelength_nm, radiance: v * s, stderr: None })
+        })
+    });
+    write_answers(out, rows)
+}
+
+fn colours(
+    out: &mut Vec<u8>,
+    args: &Args,
+    manifest: &Manifest,
+    points: &[Point],
+    light: &[Vec<f64>],
+) -> std::io::Result<()> {
+    let unit = if args.absolute { "cd_m2" } else { "per_sr" };
+    let illuminance =
+        manifest.constants.get("star_illuminance_lx").and_then(|v| v.first()).copied().unwrap_or(1.0);
+    let scale = if args.absolute { illuminance } else { 1.0 };
+    writeln!(out, "altitude_m,mu_view,mu_sun,azimuth_deg,red_{unit},green_{unit},blue_{unit}")?;
+    for (p, v) in points.iter().zip(light) {
+        let [r, g, b] = [v[0] * scale, v[1] * scale, v[2] * scale];
+        writeln!(out, "{},{},{},{},{r:.8e},{g:.8e},{b:.8e}", p.altitude, p.mu, p.mu_s, p.azimuth_deg)?;
+    }
+    Ok(())
+}
