@@ -42,6 +42,8 @@ pub struct Settings {
     pub space: ColourSpace,
     pub solver: Solver,
     pub spectral: bool,
+    /// The planet is a shipped preset as it is, so that `verify` may tell when a later tool ships another.
+    pub shipped_preset: bool,
 }
 
 /// Relative change that a converged solution may still make: well below what tables lose.
@@ -60,6 +62,7 @@ impl Default for Settings {
             space: ColourSpace::Srgb,
             solver: Solver::Moments,
             spectral: false,
+            shipped_preset: false,
         }
     }
 }
@@ -83,6 +86,7 @@ impl Settings {
             "orders": orders,
             "solver": solver,
             "spectral": self.spectral,
+            "shipped_preset": self.shipped_preset,
         })
     }
 }

@@ -80,7 +80,9 @@ pub fn run(args: &Args) -> Result<()> {
     let settings = settings(args)?;
     let planets: Vec<Planet> =
         args.presets.iter().map(|p| preset::load(p, &args.set)).collect::<Result<_>>()?;
-    for planet in &planets {
+    for (planet, preset) in planets.iter().zip(&args.presets) {
+        let shipped_preset = args.set.is_empty() && preset::is_shipped(preset);
+        let settings = Settings { shipped_preset, ..settings.clone() };
         let mut clock = Clock::new(args);
         let staging = Staging::begin(&args.out.join(&planet.name))?;
         let product =

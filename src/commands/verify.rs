@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::export::atlas::{Atlas, Samples};
 use crate::export::exr::from_exr_bytes;
 use crate::export::manifest::{MANIFEST, Manifest, Precision, Table, hash_of};
+use crate::preset;
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::Write;
@@ -36,13 +37,18 @@ pub struct Difference {
 /// # Errors
 /// `Check` if anything differs, `File` if there is no bake to check.
 pub fn run(args: &Args) -> Result<()> {
-    let differences = differences(&args.bake, |_| None)?;
+    let differences = differences(&args.bake, shipped_hash)?;
     print(args, &differences).map_err(|e| Error::machine("stdout", e))?;
     match differences.len() {
         0 => Ok(()),
         1 => Err(Error::Check(format!("{}: 1 difference", args.bake.display()))),
         n => Err(Error::Check(format!("{}: {n} differences", args.bake.display()))),
     }
+}
+
+/// The hash of the preset of this name inside the binary, if there is one.
+fn shipped_hash(name: &str) -> Option<String> {
+    preset::is_shipped(name).then(|| preset::load(name, &[]).ok().map(|planet| planet.hash()))?
 }
 
 fn print(args: &Args, differences: &[Difference]) -> std::io::Result<()> {
@@ -60,7 +66,9 @@ fn print(args: &Args, differences: &[Difference]) -> std::io::Result<()> {
     if differences.is_empty() { writeln!(out, "{bake}: every file matches its manifest") } else { Ok(()) }
 }
 
-/// What differs in the bake at `bake`. `shipped` gives the hash of the preset of a name that this tool ships.
+/// What differs in the bake at `bake`. `shipped` gives the hash of the preset of a name that this tool ships; it
+/// counts only for a bake of a shipped preset as it was, not for one changed by --set or read from a file, whose
+/// name may be the same by intent.
 pub fn differences(bake: &Path, shipped: impl Fn(&str) -> Option<String>) -> Result<Vec<Difference>> {
     let manifest = Manifest::read(bake)?;
     let folder = if bake.is_dir() { bake } else { bake.parent().unwrap_or(Path::new(".")) };
@@ -87,7 +95,8 @@ fn about_the_manifest(manifest: &Manifest, shipped: impl Fn(&str) -> Option<Stri
     if hash_of(&preset.resolved) != preset.hash {
         found.push(difference("preset.hash", "is not that of the resolved preset beside it"));
     }
-    if shipped(&preset.name).is_some_and(|hash| hash != preset.hash) {
+    let unchanged = manifest.settings["shipped_preset"] == true;
+    if unchanged && shipped(&preset.name).is_some_and(|hash| hash != preset.hash) {
         let what = format!("the preset {:?} that this tool ships has changed since", preset.name);
         found.push(difference("preset", what));
     }

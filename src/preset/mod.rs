@@ -38,6 +38,11 @@ pub fn load(name_or_path: &str, set: &[String]) -> Result<Planet> {
     read(&file, &text, set)
 }
 
+/// Whether `name` is that of a shipped preset, which [`load`] then takes, and not the path of a file.
+pub fn is_shipped(name: &str) -> bool {
+    shipped_names().any(|shipped| shipped == name)
+}
+
 /// A planet from JSON text; `file` names it in errors and is the folder's origin for its spectra.
 pub fn read(file: &str, text: &str, set: &[String]) -> Result<Planet> {
     let mut value = json::parse(file, text)?;

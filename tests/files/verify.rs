@@ -56,7 +56,7 @@ fn manifest(staging: &Staging) -> Manifest {
         schema_version: SCHEMA_VERSION,
         tool: Tool { name: "tyndall".into(), version: env!("CARGO_PKG_VERSION").into() },
         preset: Preset { name: "phobos".into(), hash: hash_of(&resolved), resolved },
-        settings: json!({"orders": "auto"}),
+        settings: json!({"orders": "auto", "shipped_preset": true}),
         wavelengths: Wavelengths { kind: GridKind::Points, nm: vec![440.0, 1.0 / 3.0, f64::MIN_POSITIVE] },
         colour: Colour {
             space: "srgb".into(),
@@ -64,6 +64,7 @@ fn manifest(staging: &Staging) -> Manifest {
             white: [0.3127, 0.329],
             matrices: BTreeMap::from([("xyz_to_rgb".into(), vec![vec![3.2404542, -1.5371385, -0.4985314]])]),
         },
+        constants: BTreeMap::from([("ground_radius_m".into(), vec![11_266.7])]),
         tables: vec![table(staging)],
         files: vec![OtherFile {
             file: "preview.png".into(),
@@ -226,6 +227,8 @@ fn a_shipped_preset_that_has_changed_is_told() {
     let found = differences(&bake, |name| (name == "phobos").then(|| "other".into())).unwrap();
     assert_eq!(found.len(), 1);
     assert!(found[0].what.contains("changed since"), "{found:?}");
+    edit(&bake, |m| m["settings"]["shipped_preset"] = json!(false));
+    assert_eq!(differences(&bake, |_| Some("other".into())).unwrap(), [], "a preset of the user's own");
 }
 
 #[test]
