@@ -23,5 +23,6 @@ pub mod isa;
 pub mod lanes;
 pub mod medium;
 pub mod points;
+pub mod reference;
 
 pub use error::{Error, Result};
