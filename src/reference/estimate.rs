@@ -84,8 +84,8 @@ impl Tracer {
         let mut scratch = Scratch::default();
         let mut sum = Light::default();
         for path in paths {
-            let mut numbers = Numbers::new(settings.seed, replicate, path);
-            sum.accumulate(&follow(&self.scene, camera, sun, orders, &mut numbers, &mut scratch));
+            let numbers = Numbers::new(settings.seed, replicate, path);
+            sum.accumulate(&follow(&self.scene, camera, sun, orders, numbers, &mut scratch));
         }
         sum
     }

@@ -34,15 +34,15 @@ pub struct Tracer {
 }
 
 /// Paths in each bin of directions when the light is learnt.
-const LESSONS: u64 = 6;
+const LESSONS: u64 = 4;
 /// Events of such a path at most.
-const LESSON_ORDERS: usize = 40;
+const LESSON_ORDERS: usize = 6;
 
 impl Tracer {
     /// Fits the air at wavelength number `wavelength` of the medium and learns coarsely where its light is.
     pub fn new(medium: &Medium, wavelength: usize) -> Self {
         let mut scene = Scene::new(medium, wavelength);
-        for round in 0..2 {
+        for round in 0..3 {
             let places = scene.guide.radii.len() * guide::ANGLES;
             let radiance: Vec<_> = (0..places).into_par_iter().map(|n| lesson(&scene, n, round)).collect();
             scene.guide.learn(&radiance);
@@ -90,11 +90,12 @@ fn lesson(scene: &Scene, number: usize, round: u64) -> [f64; guide::BINS] {
         for n in 0..LESSONS {
             let path = (number * guide::BINS + bin) as u64 * LESSONS + n;
             let mut numbers = Numbers::new(round, u64::MAX, path);
-            let (u, v) = (numbers.uniform(), numbers.uniform());
+            let (u, v) = (numbers.1.uniform(), numbers.1.uniform());
             let direction = guide::direction_in(bin, DVec3::Z, sun, u, v);
             let origin = DVec3::new(0.0, 0.0, radius);
             camera.aim(scene, origin, scene.shells.find(radius * radius), direction, sun);
-            sum += follow(scene, &camera, sun, LESSON_ORDERS, &mut numbers, &mut scratch).total;
+            let light = follow(scene, &camera, sun, LESSON_ORDERS, numbers, &mut scratch);
+            sum += light.total + light.left;
         }
         sum / LESSONS as f64
     })
