@@ -92,3 +92,48 @@ pub fn around(axis: DVec3, cosine: f64, turn: f64) -> DVec3 {
     let (s, c) = libm::sincos(2.0 * PI * turn);
     (axis * cosine + e * (sine * c) + f * (sine * s)).normalize()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Angles at even steps of probability have the moments that the phase function has, so the sampled
+    /// density is the phase function; of a table with kinks and of a sharp peak too.
+    #[test]
+    fn sampled_angles_have_the_moments_of_the_phase_function() {
+        const N: usize = 200_000;
+        for phase in [
+            PhaseFunction::Isotropic,
+            PhaseFunction::Rayleigh { king_factor: 1.06 },
+            PhaseFunction::HenyeyGreenstein { g: -0.4 },
+            PhaseFunction::HenyeyGreenstein { g: 0.99 },
+            PhaseFunction::CornetteShanks { g: 0.76 },
+            PhaseFunction::DoubleHenyeyGreenstein { g1: 0.9, g2: -0.3, weight: 0.8 },
+            PhaseFunction::tabulated(vec![(-1.0, 0.5), (0.2, 1.0), (0.9, 1.0), (1.0, 40.0)]),
+        ] {
+            let sampler = ScatteringAngle::new(&phase);
+            let (mut first, mut second) = (0.0, 0.0);
+            for k in 0..N {
+                let nu = sampler.sample((k as f64 + 0.5) / N as f64);
+                assert!((-1.0..=1.0).contains(&nu));
+                first += nu / N as f64;
+                second += 0.5 * (3.0 * nu * nu - 1.0) / N as f64;
+            }
+            let chi = phase.legendre(2);
+            assert!((first - chi[1]).abs() < 2e-5, "{phase:?}: {first} {}", chi[1]);
+            assert!((second - chi[2]).abs() < 2e-5, "{phase:?}: {second} {}", chi[2]);
+        }
+    }
+
+    /// Turned around any axis, a direction keeps its cosine to it; also around the poles of the frame.
+    #[test]
+    fn directions_keep_their_angle_to_the_axis() {
+        for axis in [DVec3::Z, -DVec3::Z, DVec3::X, DVec3::new(0.3, -0.7, 0.2).normalize()] {
+            for k in 0..64 {
+                let (cosine, turn) = (k as f64 / 32.0 - 1.0, (0.37 * k as f64).fract());
+                let d = around(axis, cosine, turn);
+                assert!((d.dot(axis) - cosine).abs() < 1e-12 && (d.length() - 1.0).abs() < 1e-12);
+            }
+        }
+    }
+}

@@ -198,3 +198,42 @@ pub fn density(cumulative: &[f64; BINS], up: DVec3, sun: DVec3, direction: DVec3
     let low = if bin > 0 { cumulative[bin - 1] } else { 0.0 };
     (cumulative[bin] - low) / solid_angle(bin)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The density of drawn directions is what the weights divide by: the mean of 1/density over draws is
+    /// the whole sphere, 4π, and every draw lies in the bin that its density is looked up in.
+    #[test]
+    fn directions_are_drawn_with_their_density() {
+        let bins: [f64; BINS] = std::array::from_fn(|i| 0.1 + ((7 * i) % 11) as f64);
+        let cumulative = distribution(&bins).expect("light");
+        let up = DVec3::new(0.2, 0.5, -0.8).normalize();
+        let sun = DVec3::new(0.9, -0.1, 0.3).normalize();
+        const N: usize = 256;
+        let mut sum = 0.0;
+        for i in 0..N {
+            for j in 0..N {
+                let (u, v) = ((i as f64 + 0.5) / N as f64, (j as f64 + 0.5) / N as f64);
+                let d = sample(&cumulative, up, sun, u, v);
+                let bin = cumulative.partition_point(|&c| c <= u).min(BINS - 1);
+                let low = if bin > 0 { cumulative[bin - 1] } else { 0.0 };
+                let expected = (cumulative[bin] - low) / solid_angle(bin);
+                let found = density(&cumulative, up, sun, d);
+                assert!((found / expected - 1.0).abs() < 1e-9);
+                sum += 1.0 / found;
+            }
+        }
+        let mean = sum / (N * N) as f64;
+        assert!((mean / (4.0 * PI) - 1.0).abs() < 0.02, "{mean}");
+    }
+
+    /// Sun angles of the grid are found again where they lie.
+    #[test]
+    fn sun_angles_round_trip() {
+        for a in 0..ANGLES {
+            assert!((place(sun_angle(a)) - a as f64).abs() < 1e-9);
+        }
+    }
+}

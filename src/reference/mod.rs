@@ -34,7 +34,7 @@ pub struct Tracer {
 }
 
 /// Paths in each bin of directions when the light is learnt.
-const LESSONS: u64 = 4;
+const LESSONS: u64 = 3;
 /// Events of such a path at most.
 const LESSON_ORDERS: usize = 6;
 
@@ -42,7 +42,7 @@ impl Tracer {
     /// Fits the air at wavelength number `wavelength` of the medium and learns coarsely where its light is.
     pub fn new(medium: &Medium, wavelength: usize) -> Self {
         let mut scene = Scene::new(medium, wavelength);
-        for round in 0..3 {
+        for round in 0..2 {
             let places = scene.guide.radii.len() * guide::ANGLES;
             let radiance: Vec<_> = (0..places).into_par_iter().map(|n| lesson(&scene, n, round)).collect();
             scene.guide.learn(&radiance);

@@ -93,7 +93,7 @@ impl Segment {
 
     fn weigh(&mut self, scene: &Scene, sun: DVec3, sunlight: impl Fn(&Scene, &Cell, DVec3, f64) -> f64) {
         self.cumulative.clear();
-        let mut sum = 0.0;
+        let (mut sum, mut before) = (0.0, 1.0);
         for cell in &self.ray.cells {
             let x = 0.5 * (cell.from + cell.to);
             let radius2 = self.ray.b2 + x * x;
@@ -106,7 +106,9 @@ impl Segment {
             for (i, p) in self.phase.iter().enumerate() {
                 source += scene.shells.scattering(cell.shell, i, u) * (p * t + diffuse);
             }
-            sum += source * (cell.to - cell.from) * cell.mean_transmittance();
+            let (through, mean) = cell.rough_transmittance();
+            sum += source * (cell.to - cell.from) * before * mean;
+            before *= through;
             self.cumulative.push(sum);
         }
     }
