@@ -51,8 +51,8 @@ fn assert_near(e: &Estimate, expected: f64, uncertainty: f64, largest: f64, what
     assert!(e.stderr <= largest * e.radiance, "{what}: standard error {} of {}", e.stderr, e.radiance);
 }
 
-/// Optical depth by midpoints along the path from the observer, cut where profiles have kinks: 60 parts a
-/// piece of an eight-point rule's halving cost, written from the definition alone.
+/// Optical depth by four-point Gauss–Legendre rules along the path from the observer, renewed at every kink
+/// and every 400th of the atmosphere's height; written from the definition alone.
 fn depth_by_quadrature(medium: &Medium, p: &Point) -> f64 {
     let (ground, top) = (medium.ground_radius, medium.top_radius);
     let r = ground + p.altitude;
@@ -112,6 +112,7 @@ fn optical_depth_is_the_integral_along_the_ray() {
     ];
     for medium in [planet(6_371e3, 100e3, 0.3, earth), planet(400e3, 60e3, 0.1, tiny)] {
         let tracer = Tracer::new(&medium, 0);
+        let mut worst = 0.0_f64;
         for altitude in [0.0, 37.0, 1500.0, 9_999.0, 20_500.0, 25_000.0, 39_900.0, 55e3] {
             for mu in [1.0, 0.6, 0.1, 0.01, 0.0, -1e-3, -0.01, -0.05, -0.1, -0.15, -0.4, -1.0] {
                 let p = view(altitude, mu, 0.5, 0.0);
@@ -120,9 +121,11 @@ fn optical_depth_is_the_integral_along_the_ray() {
                 }
                 let (found, expected) = (tracer.optical_depth(&p), depth_by_quadrature(&medium, &p));
                 let error = (found - expected).abs() / expected.max(1.0);
+                worst = worst.max(error);
                 assert!(error < 1e-5, "{altitude} m, {mu}: {found} instead of {expected}");
             }
         }
+        println!("largest error of an optical depth: {worst:.1e}");
     }
 }
 
@@ -270,9 +273,9 @@ fn thick_slabs_agree_with_discrete_ordinates() {
     {
         let tracer = Tracer::new(&medium, 0);
         for (mu, radiance) in [0.3, 0.5, 1.0].into_iter().zip(expected) {
-            let e = tracer.estimate(&view(1e4, -mu, 0.6, 0.0), &paths(8192));
+            let e = tracer.estimate(&view(1e4, -mu, 0.6, 0.0), &paths(4096));
             // The expected values have five digits.
-            assert_near(&e, radiance, 2e-5, 0.04, &format!("mu {mu}"));
+            assert_near(&e, radiance, 2e-5, 0.06, &format!("mu {mu}"));
         }
     }
 }
