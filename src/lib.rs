@@ -29,6 +29,7 @@ pub mod methods;
 pub mod points;
 pub mod preset;
 pub mod quality;
+pub mod reference;
 pub mod sky;
 pub mod spectrum;
 pub mod table;

@@ -1,7 +1,7 @@
 //! Arguments → command → exit code.
 
 use clap::Parser;
-use tyndall::commands::{bake, colour, presets, sample, verify};
+use tyndall::commands::{bake, colour, presets, reference, sample, verify};
 
 /// Offline baker of lookup tables for planetary atmospheres
 #[derive(Parser)]
@@ -10,6 +10,7 @@ use tyndall::commands::{bake, colour, presets, sample, verify};
 enum Command {
     Bake(Box<bake::Args>),
     Sample(sample::Args),
+    Reference(reference::Args),
     Verify(verify::Args),
     Colour(colour::Args),
     Presets(presets::Args),
@@ -31,6 +32,7 @@ fn run(command: Command) -> tyndall::Result<()> {
     match command {
         Command::Bake(args) => bake::run(&args),
         Command::Sample(args) => sample::run(&args),
+        Command::Reference(args) => reference::run(&args),
         Command::Verify(args) => verify::run(&args),
         Command::Colour(args) => colour::run(&args),
         Command::Presets(args) => presets::run(&args),

@@ -4,7 +4,7 @@
 //! far less than the light itself and has no gamut to leave. A look-up is
 //!   I = (1 − T) (Σ_g p_g(ν) S̄_g + S̄_multiple),   1 − T = −expm1(−τ) from the table of optical depth.
 
-use super::extinction::{channels, phase, table};
+use super::extinction::{Held, channels, phase, table};
 use super::palette::Palette;
 use super::tables::{Baked, axes_of, axis, file_order};
 use crate::export::manifest::Encoding;
@@ -83,7 +83,7 @@ pub fn tables(medium: &Medium, solution: &Solution, palette: &Palette, sizes: Si
     });
     let negative = sum.iter().flatten().filter(|v| **v < 0.0).count();
     out.push(encode("multiple".into(), "light scattered more than once over 1 - T", sum, &multiple, palette));
-    out.push(table(medium, solution, palette, LAYOUT, &multiple, DEPTH_SIZE, true));
+    out.push(table(medium, solution, palette, LAYOUT, &multiple, DEPTH_SIZE, Held::LogOfMean));
     out.push(irradiance(solution, palette, &multiple));
     if !groups.is_empty() {
         out.push(phase(medium, palette, LAYOUT, &groups));
@@ -118,9 +118,9 @@ fn fill(
         texels.par_chunks_mut(count * pairs.len()).enumerate().for_each_init(
             RayLight::default,
             |light, (ray, out)| {
-                let altitude = mapping.altitude(ray / views);
+                let altitude = mapping.inner_altitude(ray / views);
                 let (mu, hits_ground) = mapping.mu(altitude, ray % views);
-                painter.ray(mapping.radius(ray / views), mu, hits_ground, &pairs, wanted, light);
+                painter.ray(mapping.radii()[0] + altitude, mu, hits_ground, &pairs, wanted, light);
                 let source = if wanted == Wanted::Single { &light.single } else { &light.multiple };
                 let inverse = inverse_opacity(light.depth);
                 for (texel, value) in out.iter_mut().zip(source) {

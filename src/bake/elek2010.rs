@@ -4,6 +4,7 @@
 //! 4π times its luminance over that of the direct sunlight at the ray's entry: a shader multiplies it by the
 //! phase function and by the colour of that sunlight. Where the sun is behind the planet A is 0.
 
+use super::extinction::{Held, table};
 use super::palette::Palette;
 use super::tables::{Baked, Channel, axes_of, axis, file_order};
 use crate::export::manifest::{Axis, Encoding};
@@ -56,8 +57,7 @@ pub fn finish(
     ambient: Vec<[f64; 3]>,
 ) -> (Vec<Baked>, Oddities) {
     let (scattering, oddities) = scattering(texels, solution, palette, mapping);
-    let extinction =
-        super::extinction::table(medium, solution, palette, LAYOUT, mapping, EXTINCTION_SIZE, false);
+    let extinction = table(medium, solution, palette, LAYOUT, mapping, EXTINCTION_SIZE, Held::Plain);
     (vec![scattering, extinction, irradiance(ambient, mapping)], oddities)
 }
 

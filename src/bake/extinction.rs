@@ -16,8 +16,18 @@ use rayon::prelude::*;
 const FLOOR: f64 = -20.0;
 const CHANNELS: [&str; 4] = ["R", "G", "B", "A"];
 
+/// How a table holds optical depth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Held {
+    /// As it is, like the paper's extinction texture.
+    Plain,
+    /// The logarithm of the ray's mean extinction, τ over its length: it varies little, also where both
+    /// vanish, so that 1 − e^−τ keeps its digits in halves.
+    LogOfMean,
+}
+
 /// Optical depth to the ground or to the top against altitude and view, on the mapping's first two axes at
-/// another size; its logarithm where `logarithm` is set (around the vertical depth, where halves are finest).
+/// another size.
 pub fn table(
     medium: &Medium,
     solution: &Solution,
@@ -25,46 +35,66 @@ pub fn table(
     layout: &str,
     mapping: &Elek2010,
     size: [usize; 2],
-    logarithm: bool,
+    held: Held,
 ) -> Baked {
     let [altitudes, views] = size;
     let mapping = mapping.resized([altitudes, views, 2, 2]).expect("a valid size");
     let mut depths = vec![[0.0f32; 4]; altitudes * views];
-    depths.par_chunks_mut(views).enumerate().for_each(|(i, out)| row(solution, palette, &mapping, i, out));
-    let offset = if logarithm { typical(medium, palette) } else { 0.0 };
-    let encode = |v: f32| {
-        if !logarithm {
-            return v;
-        }
-        let log = if v > 0.0 { libm::log(f64::from(v)) - offset } else { FLOOR };
-        log.max(FLOOR) as f32
+    depths
+        .par_chunks_mut(views)
+        .enumerate()
+        .for_each(|(i, out)| row(solution, palette, &mapping, held, i, out));
+    let offset = if held == Held::Plain { 0.0 } else { typical(medium, palette) };
+    let encode = |v: f32| match held {
+        Held::Plain => v,
+        Held::LogOfMean if v > 0.0 => (libm::log(f64::from(v)) - offset).max(FLOOR) as f32,
+        Held::LogOfMean => FLOOR as f32,
     };
     // x is altitude, y the view.
     let texels =
         (0..altitudes * views).map(|n| depths[(n % altitudes) * views + n / altitudes].map(encode)).collect();
-    let axes: Vec<Axis> = mapping.axes()[..2].iter().map(axis).collect();
-    let encoding = if logarithm { Encoding::log(1.0, offset, FLOOR) } else { Encoding::linear(1.0) };
+    let (quantity, unit, encoding) = match held {
+        Held::Plain => ("optical depth of the ray to the ground or to the top", "1", Encoding::linear(1.0)),
+        Held::LogOfMean => (
+            "optical depth of the ray to the ground or to the top over its length d (of the view axis)",
+            "1/m",
+            Encoding::log(1.0, offset, FLOOR),
+        ),
+    };
     Baked {
         layout: layout.into(),
         name: "transmittance".into(),
-        axes,
-        channels: channels(palette, "optical depth of the ray to the ground or to the top", "1"),
+        axes: mapping.axes()[..2].iter().map(axis).collect(),
+        channels: channels(palette, quantity, unit),
         encoding,
         texels,
     }
 }
 
-fn row(solution: &Solution, palette: &Palette, mapping: &Elek2010, i: usize, out: &mut [[f32; 4]]) {
+fn row(
+    solution: &Solution,
+    palette: &Palette,
+    mapping: &Elek2010,
+    held: Held,
+    i: usize,
+    out: &mut [[f32; 4]],
+) {
     let half = out.len() / 2;
-    let (altitude, r) = (mapping.altitude(i), mapping.radius(i));
+    let altitude = if held == Held::Plain { mapping.altitude(i) } else { mapping.inner_altitude(i) };
+    let r = mapping.radii()[0] + altitude;
     for (start, to_ground) in [(0, true), (half, false)] {
         let mus: Vec<f64> = (start..start + half).map(|j| mapping.mu(altitude, j).0).collect();
         for batch in &solution.batches {
             let painter = Painter::new(solution, batch, &[]);
-            for (texel, depth) in out[start..].iter_mut().zip(painter.depths(r, &mus, to_ground)) {
+            let depths = painter.depths(r, &mus, to_ground);
+            for ((texel, depth), mu) in out[start..].iter_mut().zip(depths).zip(&mus) {
+                let length = match held {
+                    Held::Plain => 1.0,
+                    Held::LogOfMean => mapping.distance(altitude, *mu, to_ground) as f32,
+                };
                 for (k, &w) in palette.four.iter().enumerate() {
                     if w >= batch.first && w < batch.first + batch.optics.count {
-                        texel[k] = depth[w - batch.first];
+                        texel[k] = depth[w - batch.first] / length;
                     }
                 }
             }
@@ -72,11 +102,11 @@ fn row(solution: &Solution, palette: &Palette, mapping: &Elek2010, i: usize, out
     }
 }
 
-/// Logarithm of the mean vertical optical depth: the middle of what a table holds.
+/// Logarithm of the mean vertical extinction: the middle of what a table holds.
 fn typical(medium: &Medium, palette: &Palette) -> f64 {
     let depth = medium.vertical_optical_depth();
     let mean = palette.four.iter().map(|&w| depth[w]).sum::<f64>() / palette.four.len() as f64;
-    if mean > 0.0 { libm::log(mean) } else { 0.0 }
+    if mean > 0.0 { libm::log(mean / medium.height()) } else { 0.0 }
 }
 
 /// Up to four channels, one a wavelength.

@@ -6,6 +6,7 @@ mod colour_input;
 mod machine;
 pub mod presets;
 mod presets_show;
+pub mod reference;
 pub mod sample;
 mod text;
 pub mod verify;

@@ -126,6 +126,8 @@ pub struct Plane {
     texels: Texels,
     size: [usize; 2],
     mapping: Option<Elek2010>,
+    /// Values are means over the length of the ray.
+    over_length: bool,
 }
 
 impl Plane {
@@ -136,7 +138,8 @@ impl Plane {
             ["altitude", "view"] => Some(mapping(table, [size[0], size[1], 2, 2])?),
             _ => None,
         };
-        Ok(Plane { texels: Texels::new(table, atlas)?, size, mapping })
+        let over_length = table.channels.iter().any(|c| c.unit == "1/m");
+        Ok(Plane { texels: Texels::new(table, atlas)?, size, mapping, over_length })
     }
 
     /// Decoded values at a row (taken as it is) and a place 0..1 along x.
@@ -150,7 +153,8 @@ impl Plane {
         let Some(mapping) = &self.mapping else { return [0.0; 4] };
         let x = texel(mapping.altitude_coordinate(altitude), self.size[0]);
         let y = mapping.view_texel(altitude, mu, hits_ground);
-        self.texels.decode(self.texels.interpolate(&[x, y], &[1, self.size[0]]))
+        let length = if self.over_length { mapping.distance(altitude, mu, hits_ground) } else { 1.0 };
+        self.texels.decode(self.texels.interpolate(&[x, y], &[1, self.size[0]])).map(|v| v * length)
     }
 
     /// Transmittance towards a sun of zenith cosine `mu_s`; 0 behind the planet.

@@ -129,6 +129,12 @@ impl Elek2010 {
         z1 * z1 / (ground + (ground * ground + z1 * z1).sqrt())
     }
 
+    /// As [`Self::altitude`], but the first and last lie a millionth of the height inside the shell: there all
+    /// rays have a length, and means over them a value.
+    pub fn inner_altitude(&self, i: usize) -> f64 {
+        self.altitude(i).clamp(1e-6 * self.height, (1.0 - 1e-6) * self.height)
+    }
+
     /// Radius of texel `i`, m.
     pub fn radius(&self, i: usize) -> f64 {
         self.ground_radius + self.altitude(i)

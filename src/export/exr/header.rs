@@ -1,40 +1,13 @@
-//! The attributes of an EXR header, as bytes and back. Strings end in 0, numbers are little-endian.
+//! An atlas' sizes, channels and attributes as the header of an EXR file.
 
-use crate::export::atlas::{Atlas, Attribute};
-use std::collections::BTreeMap;
-
-/// Sample types of a channel list.
-pub const HALF: i32 = 1;
-pub const FLOAT: i32 = 2;
-/// The compression written; for tiles the same as ZIPS (2).
-pub const ZIP: u8 = 3;
-
-/// Name, type and value of every attribute of `atlas`, ordered by name: those that EXR requires, the packing
-/// of the slices, then the caller's (which cannot replace one of the others).
-pub fn attributes(atlas: &Atlas) -> BTreeMap<String, (&'static str, Vec<u8>)> {
-    let mut all: BTreeMap<String, (&'static str, Vec<u8>)> =
-        atlas.attributes.iter().map(|(name, value)| (name.clone(), encode(value))).collect();
-    let columns = [atlas.width * atlas.columns, atlas.height * atlas.rows()];
-    let window: Vec<u8> = [0, 0, columns[0] - 1, columns[1] - 1].iter().flat_map(|&v| int(v)).collect();
-    // One level only: mode 0; the tile is a slice.
-    let tiles = [int(atlas.width).to_vec(), int(atlas.height).to_vec(), vec![0]].concat();
-    let required = [
-        ("channels", "chlist", channel_list(atlas)),
-        ("compression", "compression", vec![ZIP]),
-        ("dataWindow", "box2i", window.clone()),
-        ("displayWindow", "box2i", window),
-        ("lineOrder", "lineOrder", vec![0]),
-        ("pixelAspectRatio", "float", 1f32.to_le_bytes().to_vec()),
-        ("screenWindowCenter", "v2f", vec![0; 8]),
-        ("screenWindowWidth", "float", 1f32.to_le_bytes().to_vec()),
-        ("tiles", "tiledesc", tiles),
-    ];
-    let packing = PACKING.into_iter().zip(packing(atlas)).map(|(name, n)| (name, "int", int(n).to_vec()));
-    for (name, kind, value) in required.into_iter().chain(packing) {
-        all.insert(name.to_string(), (kind, value));
-    }
-    all
-}
+use crate::export::atlas::{Atlas, Attribute, Channel, Samples};
+use exr::math::RoundingMode;
+use exr::meta::BlockDescription;
+use exr::meta::attribute::{
+    AttributeValue, ChannelDescription, LevelMode, LineOrder, SampleType, Text, TileDescription,
+};
+use exr::meta::header::{Header, LayerAttributes};
+use exr::prelude::{Compression, Vec2};
 
 /// The attributes that tell how slices lie in the picture, in the order of [`packing`].
 pub const PACKING: [&str; 5] = ["sliceWidth", "sliceHeight", "slices", "columns", "rows"];
@@ -43,38 +16,56 @@ fn packing(atlas: &Atlas) -> [usize; 5] {
     [atlas.width, atlas.height, atlas.slices, atlas.columns, atlas.rows()]
 }
 
-fn int(value: usize) -> [u8; 4] {
-    (value as i32).to_le_bytes()
+/// The header of the file that holds `atlas`, whose sizes have been checked to fit 30 bits.
+pub fn header(atlas: &Atlas) -> Header {
+    let channels = atlas.sorted_channels().into_iter().map(description).collect();
+    let tiles = TileDescription {
+        tile_size: Vec2(atlas.width, atlas.height),
+        level_mode: LevelMode::Singular,
+        rounding_mode: RoundingMode::Down,
+    };
+    let custom = atlas.attributes.iter().map(|(name, value)| (text(name), encode(value)));
+    // After the caller's, which cannot replace them.
+    let packing = PACKING.into_iter().zip(packing(atlas));
+    let packing = packing.map(|(name, n)| (text(name), AttributeValue::I32(n as i32)));
+    let attributes = LayerAttributes { other: custom.chain(packing).collect(), ..Default::default() };
+    Header::new(text(""), (atlas.width * atlas.columns, atlas.height * atlas.rows()), channels)
+        .with_encoding(Compression::ZIP16, BlockDescription::Tiles(tiles), LineOrder::Increasing)
+        .with_attributes(attributes)
 }
 
-fn encode(value: &Attribute) -> (&'static str, Vec<u8>) {
+/// UTF-8, as OpenEXR has it; the crate's own conversion from `str` is to Latin-1.
+fn text(text: &str) -> Text {
+    Text::from_slice_unchecked(text.as_bytes())
+}
+
+fn description(channel: &Channel) -> ChannelDescription {
+    let kind = match channel.samples {
+        Samples::Half(_) => SampleType::F16,
+        Samples::Float(_) => SampleType::F32,
+    };
+    ChannelDescription::new(text(&channel.name), kind, false)
+}
+
+fn encode(value: &Attribute) -> AttributeValue {
     match value {
-        Attribute::Text(text) => ("string", text.as_bytes().to_vec()),
-        Attribute::Int(v) => ("int", v.to_le_bytes().to_vec()),
-        Attribute::Float(v) => ("float", v.to_le_bytes().to_vec()),
+        Attribute::Text(value) => AttributeValue::Text(text(value)),
+        Attribute::Int(v) => AttributeValue::I32(*v),
+        Attribute::Float(v) => AttributeValue::F32(*v),
     }
 }
 
-/// The attribute that `bytes` of type `kind` hold; `None` for a type that atlases do not use, or damage.
-pub fn decode(kind: &str, bytes: &[u8]) -> Option<Attribute> {
-    match kind {
-        "string" => String::from_utf8(bytes.to_vec()).ok().map(Attribute::Text),
-        "int" => Some(Attribute::Int(i32::from_le_bytes(bytes.try_into().ok()?))),
-        "float" => Some(Attribute::Float(f32::from_le_bytes(bytes.try_into().ok()?))),
+/// The attribute that `value` is; `None` for a type that atlases do not use, or text that is not UTF-8.
+pub fn decode(value: &AttributeValue) -> Option<Attribute> {
+    match value {
+        AttributeValue::Text(text) => decode_text(text).map(Attribute::Text),
+        AttributeValue::I32(v) => Some(Attribute::Int(*v)),
+        AttributeValue::F32(v) => Some(Attribute::Float(*v)),
         _ => None,
     }
 }
 
-fn channel_list(atlas: &Atlas) -> Vec<u8> {
-    let mut list = Vec::new();
-    for channel in atlas.sorted_channels() {
-        list.extend_from_slice(channel.name.as_bytes());
-        list.push(0);
-        list.extend_from_slice(&if channel.samples.bytes() == 2 { HALF } else { FLOAT }.to_le_bytes());
-        // "Perceptually linear" off, three unused bytes; every pixel is sampled, across and down.
-        list.extend_from_slice(&[0; 4]);
-        list.extend_from_slice(&[1, 0, 0, 0, 1, 0, 0, 0]);
-    }
-    list.push(0);
-    list
+/// `None` if it is not UTF-8.
+pub fn decode_text(text: &Text) -> Option<String> {
+    String::from_utf8(text.as_slice().to_vec()).ok()
 }

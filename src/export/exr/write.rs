@@ -1,60 +1,50 @@
 //! An atlas as the bytes of an EXR file.
 
-use super::{LONG_NAMES, MAGIC, VERSION, header, zip};
-use crate::error::Result;
+use super::{header, order};
+use crate::error::{Error, Result};
 use crate::export::atlas::{Atlas, Channel, Samples};
+use exr::block::UncompressedBlock;
+use exr::block::chunk::Chunk;
+use exr::block::writer::ChunksWriter;
+use exr::meta::MetaData;
 use rayon::prelude::*;
-
-/// Tile x and y, level x and y, size of the data: five 32-bit numbers before every tile.
-const TILE_HEADER: usize = 20;
+use std::io::Cursor;
 
 /// The bytes of an EXR file that holds `atlas`: the same on every run and for any number of threads.
 ///
 /// # Errors
-/// `Argument` if the samples do not fit the sizes or names cannot be stored; `NotFinite` if a sample is
-/// infinite or not a number.
+/// `Argument` if the samples do not fit the sizes or names cannot be stored (OpenEXR's own attributes are not
+/// to be set); `NotFinite` if a sample is infinite or not a number.
 pub fn to_exr_bytes(atlas: &Atlas) -> Result<Vec<u8>> {
     atlas.check()?;
-    let channels = atlas.sorted_channels();
-    // A tiled file must hold every tile, so the empty places of the last row are tiles of zeros.
-    let tiles: Vec<Vec<u8>> = (0..atlas.columns * atlas.rows())
-        .into_par_iter()
-        .map(|slice| zip::pack(raw_tile(atlas, &channels, slice)))
-        .collect();
-    let mut file = header_bytes(atlas);
-    file.reserve(tiles.iter().map(|t| t.len() + TILE_HEADER + 8).sum());
-    let mut offset = file.len() + 8 * tiles.len();
-    for tile in &tiles {
-        file.extend_from_slice(&(offset as u64).to_le_bytes());
-        offset += TILE_HEADER + tile.len();
-    }
-    for (index, tile) in tiles.iter().enumerate() {
-        for number in [index % atlas.columns, index / atlas.columns, 0, 0, tile.len()] {
-            file.extend_from_slice(&(number as i32).to_le_bytes());
+    let mut file = Cursor::new(Vec::new());
+    let headers = [header::header(atlas)].into_iter().collect();
+    exr::block::write(&mut file, headers, true, |meta, writer| {
+        for (slice, tile) in compressed_tiles(atlas, &meta)?.into_iter().enumerate() {
+            writer.write_chunk(slice, tile)?;
         }
-        file.extend_from_slice(tile);
-    }
-    Ok(file)
+        Ok(())
+    })
+    .map_err(|e| Error::Argument(format!("{}: {e}", atlas.name)))?;
+    Ok(order::by_name(file.into_inner()))
 }
 
-fn header_bytes(atlas: &Atlas) -> Vec<u8> {
-    let attributes = header::attributes(atlas);
-    let long = attributes.keys().chain(atlas.channels.iter().map(|c| &c.name)).any(|name| name.len() > 31);
-    let version = VERSION | if long { LONG_NAMES } else { 0 };
-    let mut bytes = [MAGIC, version.to_le_bytes()].concat();
-    for (name, (kind, value)) in attributes {
-        bytes.extend_from_slice(name.as_bytes());
-        bytes.push(0);
-        bytes.extend_from_slice(kind.as_bytes());
-        bytes.push(0);
-        bytes.extend_from_slice(&(value.len() as i32).to_le_bytes());
-        bytes.extend_from_slice(&value);
-    }
-    bytes.push(0);
-    bytes
+/// Every tile in the order of the file, compressed on the current thread pool; the crate's own parallel writer
+/// would start another pool, with a thread for each core.
+fn compressed_tiles(atlas: &Atlas, meta: &MetaData) -> exr::error::Result<Vec<Chunk>> {
+    let channels = atlas.sorted_channels();
+    let places: Vec<_> = meta.enumerate_ordered_header_block_indices().collect();
+    places
+        .into_par_iter()
+        .map(|(slice, index)| {
+            let data = raw_tile(atlas, &channels, slice);
+            UncompressedBlock { index, data }.compress_to_chunk(&meta.headers)
+        })
+        .collect()
 }
 
-/// A slice in EXR's order: line by line, in a line channel by channel; zeros past the last slice.
+/// A slice in EXR's order: line by line, in a line channel by channel. A tiled file must hold every tile, so
+/// the empty places after the last slice are tiles of zeros.
 fn raw_tile(atlas: &Atlas, channels: &[&Channel], slice: usize) -> Vec<u8> {
     let line_bytes: usize = channels.iter().map(|c| c.samples.bytes() * atlas.width).sum();
     let mut raw = Vec::with_capacity(line_bytes * atlas.height);
@@ -67,8 +57,9 @@ fn raw_tile(atlas: &Atlas, channels: &[&Channel], slice: usize) -> Vec<u8> {
         let line = start..start + atlas.width;
         for channel in channels {
             match &channel.samples {
-                Samples::Half(v) => raw.extend(v[line.clone()].iter().flat_map(|x| x.to_le_bytes())),
-                Samples::Float(v) => raw.extend(v[line.clone()].iter().flat_map(|x| x.to_le_bytes())),
+                // The crate takes the machine's byte order, and stores little-endian.
+                Samples::Half(v) => raw.extend(v[line.clone()].iter().flat_map(|x| x.to_ne_bytes())),
+                Samples::Float(v) => raw.extend(v[line.clone()].iter().flat_map(|x| x.to_ne_bytes())),
             }
         }
     }
