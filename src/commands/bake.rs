@@ -1,6 +1,7 @@
 //! `tyndall bake`: presets in, folders of tables out.
 
 use super::machine::{IsaChoice, orders, wavelengths, with_threads};
+use super::text::print;
 use crate::bake::compact::Sizes;
 use crate::bake::settings::{Layout, Settings, Solver, TOLERANCE};
 use crate::bake::{Product, bake};
@@ -80,6 +81,13 @@ pub fn run(args: &Args) -> Result<()> {
     let settings = settings(args)?;
     let planets: Vec<Planet> =
         args.presets.iter().map(|p| preset::load(p, &args.set)).collect::<Result<_>>()?;
+    for (k, planet) in planets.iter().enumerate() {
+        if let Some(j) = planets[..k].iter().position(|other| other.name == planet.name) {
+            let (one, two) = (&args.presets[j], &args.presets[k]);
+            let reason = format!("{one} and {two} are both named {}: one folder for two bakes", planet.name);
+            return Err(Error::Argument(reason));
+        }
+    }
     for (planet, preset) in planets.iter().zip(&args.presets) {
         let shipped_preset = args.set.is_empty() && preset::is_shipped(preset);
         let settings = Settings { shipped_preset, ..settings.clone() };
@@ -93,7 +101,7 @@ pub fn run(args: &Args) -> Result<()> {
         }
         staging.commit()?;
         let stages = clock.end();
-        tell(args, planet, &product, &stages);
+        tell(args, planet, &product, &stages)?;
     }
     Ok(())
 }
@@ -117,6 +125,12 @@ fn settings(args: &Args) -> Result<Settings> {
     if literal && matches!(args.orders, Orders::Converged { .. }) {
         return Err(Error::Argument("--solver literal sums orders one by one: give --orders N".into()));
     }
+    let without_paper = !settings.layouts.contains(&Layout::Elek2010);
+    for (option, given) in [("--solver literal", literal), ("--spectral", args.spectral)] {
+        if given && without_paper {
+            return Err(Error::Argument(format!("{option} is of the layout elek2010, which --layout leaves out")));
+        }
+    }
     for text in &args.size {
         let (name, size) = text.split_once('=').unwrap_or((Layout::Elek2010.name(), text));
         let size = parse_size(size).map_err(|reason| Error::Argument(format!("--size {text}: {reason}")))?;
@@ -124,7 +138,10 @@ fn settings(args: &Args) -> Result<Settings> {
             "elek2010" => settings.elek2010_size = size,
             "compact" => settings.compact_sizes = Sizes { multiple: size, ..settings.compact_sizes },
             "compact-single" => settings.compact_sizes = Sizes { single: size, ..settings.compact_sizes },
-            other => return Err(Error::Argument(format!("--size {text}: {other} is no layout"))),
+            other => {
+                let known = "elek2010, compact or compact-single";
+                return Err(Error::Argument(format!("--size {text}: {other} is not one of {known}")));
+            }
         }
     }
     Ok(settings)
@@ -201,7 +218,12 @@ fn cpu_time() -> Duration {
     Duration::ZERO
 }
 
-fn tell(args: &Args, planet: &Planet, product: &Product, stages: &[(String, Duration, Duration)]) {
+fn tell(
+    args: &Args,
+    planet: &Planet,
+    product: &Product,
+    stages: &[(String, Duration, Duration)],
+) -> Result<()> {
     let folder = args.out.join(&planet.name);
     let bytes: usize = product.files.iter().map(|f| f.1.len()).sum();
     if args.json {
@@ -210,20 +232,19 @@ fn tell(args: &Args, planet: &Planet, product: &Product, stages: &[(String, Dura
             .iter()
             .map(|(n, w, c)| json!({ "stage": n, "wall_s": seconds(w), "cpu_s": seconds(c) }))
             .collect();
-        println!(
-            "{}",
-            json!({ "preset": planet.name, "folder": folder, "bytes": bytes, "warnings": product.manifest.warnings,
-                    "quality": product.manifest.quality, "perf": perf })
-        );
-        return;
+        let answer = json!({ "preset": planet.name, "folder": folder.to_string_lossy(), "bytes": bytes,
+            "warnings": product.manifest.warnings, "quality": product.manifest.quality, "perf": perf });
+        return print(&format!("{answer}\n"));
     }
-    println!("{}: {} files, {:.1} MB", folder.display(), product.files.len(), bytes as f64 / 1e6);
+    let megabytes = bytes as f64 / 1e6;
+    print(&format!("{}: {} files, {megabytes:.1} MB\n", folder.display(), product.files.len()))?;
     if args.perf {
         for (name, wall, cpu) in stages {
-            println!("  {name:<22} {:7.3} s wall {:7.3} s CPU", wall.as_secs_f64(), cpu.as_secs_f64());
+            let (wall, cpu) = (wall.as_secs_f64(), cpu.as_secs_f64());
+            print(&format!("  {name:<22} {wall:7.3} s wall {cpu:7.3} s CPU\n"))?;
         }
         if let Some(peak) = peak_memory() {
-            println!("  peak memory {:.0} MB", peak as f64 / 1e6);
+            print(&format!("  peak memory {:.0} MB\n", peak as f64 / 1e6))?;
         }
     }
     if !args.quiet {
@@ -231,6 +252,7 @@ fn tell(args: &Args, planet: &Planet, product: &Product, stages: &[(String, Dura
             eprintln!("warning: {}: {warning}", planet.name);
         }
     }
+    Ok(())
 }
 
 /// Largest resident size of this process, bytes.

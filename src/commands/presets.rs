@@ -19,6 +19,7 @@ pub struct Args {
 #[derive(clap::Subcommand, Debug)]
 pub enum Action {
     /// Names and descriptions of the shipped presets
+    #[command(before_help = "Example: tyndall presets list --json")]
     List {
         /// JSON instead of a table
         #[arg(long)]

@@ -1,6 +1,7 @@
 //! `tyndall sample`: what baked tables answer at any view, and the truth beside it.
 
 use super::machine::{IsaChoice, orders, wavelengths, with_threads};
+use super::text::print;
 use crate::error::{Error, Result};
 use crate::export::manifest::Manifest;
 use crate::points::{Answer, Point, read_points, write_answers};
@@ -82,7 +83,7 @@ pub fn run(args: &Args) -> Result<()> {
             }
         }
     }
-    std::io::stdout().write_all(&out).map_err(|e| Error::machine("standard output", e))
+    print(&String::from_utf8_lossy(&out))
 }
 
 fn layout(args: &Args, manifest: &Manifest) -> Result<String> {

@@ -1,5 +1,6 @@
 //! `tyndall verify`: do the files of a bake match their manifest, its preset, and this tool?
 
+use super::text;
 use crate::error::{Error, Result};
 use crate::export::atlas::{Atlas, Samples};
 use crate::export::exr::from_exr_bytes;
@@ -7,14 +8,13 @@ use crate::export::manifest::{MANIFEST, Manifest, Precision, Table, hash_of};
 use crate::preset;
 use std::collections::BTreeSet;
 use std::fs;
-use std::io::Write;
 use std::path::{Component, Path, PathBuf};
 
 /// Arguments of `tyndall verify`.
 #[derive(Debug, clap::Args)]
 #[command(
     about = "Check that the files of a bake match their manifest, its preset and this tool",
-    before_help = "tyndall verify out/earth     # 0: all holds; 1: something differs, a line for each; 2: no bake"
+    before_help = "Example: tyndall verify out/earth     # 0: all holds; 1: something differs, a line for each; 2: no bake"
 )]
 pub struct Args {
     /// The folder of a bake (the one with bake.json in it)
@@ -38,7 +38,7 @@ pub struct Difference {
 /// `Check` if anything differs, `File` if there is no bake to check.
 pub fn run(args: &Args) -> Result<()> {
     let differences = differences(&args.bake, shipped_hash)?;
-    print(args, &differences).map_err(|e| Error::machine("stdout", e))?;
+    text::print(&told(args, &differences))?;
     match differences.len() {
         0 => Ok(()),
         1 => Err(Error::Check(format!("{}: 1 difference", args.bake.display()))),
@@ -51,19 +51,18 @@ fn shipped_hash(name: &str) -> Option<String> {
     preset::is_shipped(name).then(|| preset::load(name, &[]).ok().map(|planet| planet.hash()))?
 }
 
-fn print(args: &Args, differences: &[Difference]) -> std::io::Result<()> {
-    let mut out = std::io::stdout().lock();
+fn told(args: &Args, differences: &[Difference]) -> String {
     let bake = args.bake.display();
     if args.json {
         let holds = differences.is_empty();
         let answer =
             serde_json::json!({"bake": bake.to_string(), "holds": holds, "differences": differences});
-        return writeln!(out, "{answer:#}");
+        return format!("{answer:#}\n");
     }
-    for d in differences {
-        writeln!(out, "{bake}: {}: {}", d.place, d.what)?;
+    if differences.is_empty() {
+        return format!("{bake}: every file matches its manifest\n");
     }
-    if differences.is_empty() { writeln!(out, "{bake}: every file matches its manifest") } else { Ok(()) }
+    differences.iter().map(|d| format!("{bake}: {}: {}\n", d.place, d.what)).collect()
 }
 
 /// What differs in the bake at `bake`. `shipped` gives the hash of the preset of a name that this tool ships; it

@@ -13,6 +13,9 @@ pub fn apply(root: &mut Value, file: &str, assignment: &str) -> Result<()> {
     let refuse = |reason: String| Error::Argument(format!("--set {assignment}: {reason} ({file})"));
     let (path, text) =
         assignment.split_once('=').ok_or_else(|| refuse("needs the form path.to.key=value".into()))?;
+    if text.parse::<f64>().is_ok_and(|v| !v.is_finite()) {
+        return Err(refuse("not a finite number".into()));
+    }
     let mut value = serde_json::from_str(text).unwrap_or_else(|_| Value::String(text.to_string()));
     add_sources(&mut value);
     let steps = steps(path);
@@ -148,6 +151,9 @@ mod tests {
         assert!(refused("constituents[7].phase=1").contains("item 7 of a list of 2"));
         assert!(refused("top.height_km.x=1").contains("below a plain value"));
         assert!(refused("top.height_km").contains("path.to.key=value"));
+        for number in ["NaN", "-inf", "1e999"] {
+            assert!(refused(&format!("top.height_km={number}")).contains("not a finite number"));
+        }
         assert!(refused("=3").contains("empty path"));
     }
 }

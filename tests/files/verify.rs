@@ -238,5 +238,5 @@ fn no_bake_is_exit_2_and_help_opens_with_an_example() {
     assert_eq!(error.exit_code(), 2);
     let help =
         <Args as clap::Args>::augment_args(clap::Command::new("verify")).render_long_help().to_string();
-    assert!(help.starts_with("tyndall verify out/earth"), "{help}");
+    assert!(help.starts_with("Example: tyndall verify out/earth"), "{help}");
 }
