@@ -128,7 +128,9 @@ fn settings(args: &Args) -> Result<Settings> {
     let without_paper = !settings.layouts.contains(&Layout::Elek2010);
     for (option, given) in [("--solver literal", literal), ("--spectral", args.spectral)] {
         if given && without_paper {
-            return Err(Error::Argument(format!("{option} is of the layout elek2010, which --layout leaves out")));
+            return Err(Error::Argument(format!(
+                "{option} is of the layout elek2010, which --layout leaves out"
+            )));
         }
     }
     for text in &args.size {

@@ -1,0 +1,16 @@
+//! `tyndall` as a process: what a user types, what comes back, what stands on the disk afterwards.
+
+mod cli {
+    mod damaged;
+    mod disk;
+    mod help;
+    mod media;
+    mod options;
+    mod places;
+    mod points;
+    mod refused;
+    mod round_trip;
+    mod run;
+    mod same_bytes;
+    mod stopped;
+}

@@ -1,0 +1,74 @@
+//! Bakes that are killed, interrupted, or race for one folder: what stands there is a whole bake at any moment.
+
+#![cfg(unix)]
+
+use super::run::*;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// A bake of full size, which takes far longer than the tests wait, that has begun its work.
+fn long_bake(out: &Path) -> Child {
+    let mut bake = command();
+    bake.args(["bake", "earth", "--quiet", "--wavelengths", "90", "--out"]).arg(out);
+    let child = bake.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let start = Instant::now();
+    while !names(out).iter().any(|name| name.starts_with(".earth.tmp-")) {
+        assert!(start.elapsed() < Duration::from_secs(20), "the bake does not begin: {:?}", names(out));
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    std::thread::sleep(Duration::from_millis(150));
+    child
+}
+
+fn signal(child: &Child, name: &str) {
+    let sent = Command::new("kill").args([name, &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+}
+
+/// Ctrl-C and SIGTERM end a bake with 3 and nothing left beside the old bake. SIGKILL cannot be answered: what
+/// it leaves is swept by the next bake.
+#[test]
+fn the_old_bake_is_whole() {
+    let dir = tempfile::tempdir().unwrap();
+    let old = bake("earth", dir.path(), &["--layout", "compact"]);
+    let before = files(&old);
+    for name in ["-INT", "-TERM", "-KILL"] {
+        let child = long_bake(dir.path());
+        signal(&child, name);
+        let done = ran(child.wait_with_output().unwrap());
+        if name == "-KILL" {
+            assert_eq!((done.code, names(dir.path()).len()), (None, 2), "{:?}", names(dir.path()));
+        } else {
+            assert_eq!((done.code, names(dir.path())), (Some(3), vec!["earth".into()]), "{name}");
+            assert!(done.err.contains("interrupted"), "{name}: {}", done.err);
+        }
+        holds(&old);
+        assert!(files(&old) == before, "{name}");
+    }
+    bake("earth", dir.path(), &["--layout", "compact"]);
+    assert_eq!(names(dir.path()), ["earth"]);
+    assert!(files(&old) == before);
+}
+
+/// Two processes bake different planets of one name into one folder: both succeed, and what stands at the end
+/// is all of one of them.
+#[test]
+fn two_bakes_race_for_one_folder() {
+    let dir = tempfile::tempdir().unwrap();
+    let start = |albedo: &str| {
+        let set = format!("ground.albedo={albedo}");
+        let mut bake = small_bake("earth", dir.path(), &["--layout", "compact", "--set", &set]);
+        bake.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+    };
+    let racers = [start("0.1"), start("0.9")];
+    for racer in racers {
+        let done = ran(racer.wait_with_output().unwrap());
+        assert_eq!(done.code, Some(0), "{}", done.err);
+    }
+    assert_eq!(names(dir.path()), ["earth"]);
+    let winner = dir.path().join("earth");
+    holds(&winner);
+    let albedo = manifest(&winner)["constants"]["ground_albedo_at_four"][0].as_f64().unwrap();
+    assert!([0.1, 0.9].contains(&albedo), "{albedo}");
+}
