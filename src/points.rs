@@ -41,7 +41,7 @@ pub fn read_points(path: &Path) -> Result<Vec<Point>> {
     }
     let mut points = Vec::new();
     for record in reader.records() {
-        let record = record.map_err(|e| Error::file(path, e))?;
+        let record = record.map_err(|e| unreadable(path, e))?;
         let line = record.position().map_or(0, |p| p.line());
         let mut v = [0.0; 4];
         for (k, slot) in v.iter_mut().enumerate() {
@@ -50,6 +50,17 @@ pub fn read_points(path: &Path) -> Result<Vec<Point>> {
         points.push(Point { altitude: v[0], mu: v[1], mu_s: v[2], azimuth_deg: v[3] });
     }
     Ok(points)
+}
+
+/// A row with too few or too many fields (a decimal comma makes two of one) in our words, the rest in csv's.
+fn unreadable(path: &Path, error: csv::Error) -> Error {
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths { pos: Some(pos), expected_len, len } => Error::file(
+            path,
+            format!("line {}: {len} fields, not {expected_len} as in the header", pos.line()),
+        ),
+        _ => Error::file(path, error),
+    }
 }
 
 fn number(path: &Path, line: u64, column: &str, text: &str) -> Result<f64> {

@@ -14,7 +14,8 @@ use std::path::{Component, Path, PathBuf};
 #[derive(Debug, clap::Args)]
 #[command(
     about = "Check that the files of a bake match their manifest, its preset and this tool",
-    before_help = "Example: tyndall verify out/earth     # 0: all holds; 1: something differs, a line for each; 2: no bake"
+    before_help = "Example: tyndall verify out/earth",
+    after_help = "Exit code 0: all holds; 1: something differs, a line for each on stdout; 2: no bake to check."
 )]
 pub struct Args {
     /// The folder of a bake (the one with bake.json in it)

@@ -30,7 +30,7 @@ fn examples(command: &str) -> Vec<String> {
 fn parse(example: &str) -> Result<(), clap::Error> {
     let words: Vec<&str> = example.split_whitespace().collect();
     assert_eq!(words[0], "tyndall", "{example}");
-    let named = clap::Command::new(words[1].to_string());
+    let named = clap::Command::new("tyndall");
     let parser = match words[1] {
         "bake" => commands::bake::Args::augment_args(named),
         "sample" => commands::sample::Args::augment_args(named),

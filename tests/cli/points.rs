@@ -17,7 +17,8 @@ fn slips_are_located() {
         (format!("{head}\n0,1,0.5,0\n-1,1,0.5,0\n"), &["line 3, altitude_m = -1: below the ground"]),
         (format!("{head}\n0,1.01,0.5,0\n"), &["line 2, mu_view = 1.01", "between -1 and 1"]),
         (format!("{head}\n0,1,-2,0\n"), &["line 2, mu_sun = -2", "between -1 and 1"]),
-        (format!("{head}\n0,1,0.5\n"), &["line 2"]),
+        (format!("{head}\n0,1,0.5\n"), &["line 2: 3 fields, not 4"]),
+        (format!("{head}\n0,0,5,1,0\n"), &["line 2: 5 fields, not 4"]),
         (String::new(), &["column altitude_m is missing"]),
     ] {
         fs::write(&file, &text).unwrap();

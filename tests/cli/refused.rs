@@ -18,8 +18,8 @@ fn refused(line: &str, reasons: &[&str]) {
 fn presets_and_values() {
     refused("bake erth", &["`erth`", "nearest is `earth`"]);
     refused("bake no-such.json", &["no-such.json", "No such file"]);
-    refused("bake /", &["/: ", "directory"]);
-    refused("reference erth --points x.csv", &["x.csv"]);
+    refused("bake tests/cli", &["tests/cli: ", "directory"]);
+    refused("reference earth --points x.csv", &["x.csv: No such file"]);
     let set =
         |assignment: &str, reasons: &[&str]| refused(&format!("bake earth --set {assignment}"), reasons);
     set("grond.albedo=0", &["grond.albedo=0", "nearest is `ground`", "presets/planets/earth.json"]);
