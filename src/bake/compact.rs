@@ -18,14 +18,14 @@ use rayon::prelude::*;
 /// Name of the layout and of its folder.
 pub const LAYOUT: &str = "compact";
 /// Texels of the single-scattering tables and of the multiple-scattering one: altitude, view, sun, azimuth.
-pub const SINGLE_SIZE: [usize; 4] = [24, 64, 64, 4];
-pub const MULTIPLE_SIZE: [usize; 4] = [16, 64, 40, 4];
+pub const SINGLE_SIZE: [usize; 4] = [20, 48, 44, 8];
+pub const MULTIPLE_SIZE: [usize; 4] = [16, 56, 40, 8];
 const DEPTH_SIZE: [usize; 2] = [64, 256];
 const IRRADIANCE_SIZE: usize = 128;
 /// Stored logarithms at or below this stand for darkness.
 pub const FLOOR: f64 = -24.0;
 /// Where this layout's sun axes are finest.
-const SUN: SunCurve = SunCurve::Rational { shift: 0.07, width: 0.25 };
+const SUN: SunCurve = SunCurve::Rational { shift: 0.06, width: 0.25 };
 
 /// The mapping of this layout for a medium; none where a size is out of range.
 pub fn mapping(medium: &Medium, size: [usize; 4]) -> Option<Elek2010> {

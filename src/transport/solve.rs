@@ -49,7 +49,7 @@ impl Resolution {
         azimuths: 6,
         sun_nodes: 48,
         sunlight_nodes: 192,
-        degree: 6,
+        degree: 8,
     };
     /// For answers that tables are measured against.
     pub const EXACT: Resolution = Resolution {
@@ -60,7 +60,7 @@ impl Resolution {
         azimuths: 8,
         sun_nodes: 64,
         sunlight_nodes: 512,
-        degree: 6,
+        degree: 8,
     };
 }
 
