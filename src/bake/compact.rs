@@ -20,7 +20,7 @@ pub const LAYOUT: &str = "compact";
 /// Texels of the single-scattering tables and of the multiple-scattering one: altitude, view, sun, azimuth.
 pub const SINGLE_SIZE: [usize; 4] = [20, 48, 44, 8];
 pub const MULTIPLE_SIZE: [usize; 4] = [16, 56, 40, 8];
-const DEPTH_SIZE: [usize; 2] = [64, 256];
+const DEPTH_SIZE: [usize; 2] = [128, 512];
 const IRRADIANCE_SIZE: usize = 128;
 /// Stored logarithms at or below this stand for darkness.
 pub const FLOOR: f64 = -24.0;

@@ -122,8 +122,9 @@ impl<'a> Painter<'a> {
 
     #[inline(always)]
     fn multiple(&self, path: &Path, mu: f32, pairs: &Pairs, out: &mut RayLight) {
-        let ray = Ray::new(path, &self.solution.geometry.levels, &self.batch.optics.extinction, true);
+        let levels = &self.solution.geometry.levels;
         for (group, out_group) in self.groups.iter().zip(out.multiple.chunks_exact_mut(pairs.len())) {
+            let ray = Ray::weighted(path, levels, &self.batch.optics.extinction, &group.single.shares);
             let kernel = kernel_for(group.basis.modes);
             kernel(&ray, mu, &group.field, &self.axis, &group.basis, pairs, &mut out.scratch, out_group);
         }
@@ -206,11 +207,11 @@ fn group(solution: &Solution, batch: &Batch, members: &[usize]) -> Group {
         .then(|| batch.sunlight.times_depth(&solution.columns, &scattering));
     let single =
         SingleGroup { shares: optics.group_shares(&geometry.shells, &geometry.levels, members), deeper };
-    let shares: Vec<Vec<Lanes>> = (0..optics.scattering.len())
-        .map(|c| optics.shares(&geometry.shells, &geometry.levels.coarse, c))
-        .collect();
+    // The shares are in the weights of the rays; those of the group's first constituent stand for its phase.
+    let shares: Vec<Vec<Lanes>> =
+        (0..optics.scattering.len()).map(|_| vec![Lanes::splat(1.0); geometry.levels.coarse.len()]).collect();
     let refinement = Refinement::new(geometry.axis.len(), REFINEMENT, true);
-    let all = batch.state.field(&solution.basis, optics, &shares, members, &refinement);
+    let all = batch.state.field(&solution.basis, optics, &shares, &members[..1], &refinement);
     let (basis, field) = needed_terms(&solution.basis, optics, members, all);
     Group { single, basis, field, first: members[0], scattering }
 }

@@ -143,6 +143,15 @@ impl Path {
         out
     }
 
+    /// Where stop `k` lies between two others: by radius, along the ray where that is the same.
+    fn place_between(&self, k: usize, from: usize, to: usize) -> f32 {
+        let (a, b, x) = (&self.stops[from], &self.stops[to], &self.stops[k]);
+        let by_radius = (b.r - a.r).abs() > 1e-9 * a.r;
+        let place =
+            if by_radius { (x.r - a.r) / (b.r - a.r) } else { (x.along - a.along) / (b.along - a.along) };
+        place.clamp(0.0, 1.0) as f32
+    }
+
     /// The columns of segment number `k`.
     pub fn segment(&self, k: usize) -> &[f64] {
         &self.columns[k * self.constituents..][..self.constituents]
@@ -212,6 +221,55 @@ impl Ray {
             Hit { cos_turn: cos as f32, sin_turn: sin as f32, transmittance }
         });
         Ray { samples, hit, depth: total }
+    }
+}
+
+impl Ray {
+    /// Samples at the coarse stops only, for a source that is `share` (per fine level) times a function linear
+    /// in radius between them: the share of one constituent in the extinction can change fast, where another
+    /// one begins, while the light that it scatters does not.
+    #[inline(always)]
+    pub fn weighted(path: &Path, levels: &Levels, extinction: &[Lanes], share: &[Lanes]) -> Self {
+        let last = path.stops.len() - 1;
+        let at_stop = |k: usize| {
+            let (level, place) = path.stops[k].fine;
+            if place == 0.0 {
+                share[level]
+            } else {
+                share[level] * (1.0 - place as f32) + share[level + 1] * place as f32
+            }
+        };
+        let mut samples = vec![Sample::at(path, levels, &path.stops[0], true)];
+        let (mut transmittance, mut total) = (Lanes::splat(1.0), Lanes::ZERO);
+        let mut from = 0;
+        while from < last {
+            let to = (from + 1..=last)
+                .find(|&k| path.stops[k].coarse || k == last)
+                .expect("the last stop ends it");
+            let (mut near_sum, mut far_sum) = (Lanes::ZERO, Lanes::ZERO);
+            let mut share_here = at_stop(from);
+            for k in from..to {
+                let mut depth = Lanes::ZERO;
+                for (column, e) in path.segment(k).iter().zip(extinction) {
+                    depth += *e * *column as f32;
+                }
+                let (near, far, through) = segment_weights(depth);
+                let share_next = at_stop(k + 1);
+                let (a, b) = (path.place_between(k, from, to), path.place_between(k + 1, from, to));
+                let (near, far) = (transmittance * near * share_here, transmittance * far * share_next);
+                near_sum += near * (1.0 - a) + far * (1.0 - b);
+                far_sum += near * a + far * b;
+                transmittance = transmittance * through;
+                total += depth;
+                share_here = share_next;
+            }
+            samples.last_mut().expect("not empty").weight += near_sum;
+            let mut sample = Sample::at(path, levels, &path.stops[to], true);
+            sample.weight = far_sum;
+            samples.push(sample);
+            from = to;
+        }
+        Ray { samples, hit: None, depth: total }
     }
 }
 
