@@ -1,10 +1,11 @@
 //! The compact layout: spectral radiance at four wavelengths, single scattering apart for each phase function.
 //!
-//! Every table holds ln S̄ − c of S̄ = I / (1 − T), T the transmittance of the ray: a mean source, which varies
-//! far less than the light itself and has no gamut to leave. A look-up is
-//!   I = (1 − T) (Σ_g p_g(ν) S̄_g + S̄_multiple),   1 − T = −expm1(−τ) from the table of optical depth.
+//! Every table holds ln S̄ − c of S̄ = I / (1 − e^−τ), a mean source, which varies far less than the light itself
+//! and has no gamut to leave. τ is the optical depth of the ray without the constituents that absorb only: those
+//! come and go with altitude and would leave their edges in S̄. A look-up is
+//!   I = (1 − e^−τ) (Σ_g p_g(ν) S̄_g + S̄_multiple),   1 − e^−τ = −expm1(−τ).
 
-use super::extinction::{Held, channels, phase, table};
+use super::extinction::{Held, Matter, channels, phase, table};
 use super::palette::Palette;
 use super::tables::{Baked, axes_of, axis, file_order};
 use crate::export::manifest::Encoding;
@@ -20,16 +21,19 @@ pub const LAYOUT: &str = "compact";
 /// Texels of the single-scattering tables and of the multiple-scattering one: altitude, view, sun, azimuth.
 pub const SINGLE_SIZE: [usize; 4] = [20, 48, 44, 8];
 pub const MULTIPLE_SIZE: [usize; 4] = [16, 56, 40, 8];
-const DEPTH_SIZE: [usize; 2] = [128, 512];
+const DEPTH_SIZE: [usize; 2] = [64, 256];
 const IRRADIANCE_SIZE: usize = 128;
 /// Stored logarithms at or below this stand for darkness.
 pub const FLOOR: f64 = -24.0;
 /// Where this layout's sun axes are finest.
 const SUN: SunCurve = SunCurve::Rational { shift: 0.06, width: 0.25 };
 
+/// The paper's view axis spends few texels near the zenith, where light varies with azimuth.
+const VIEW_POWER: f64 = 1.5;
+
 /// The mapping of this layout for a medium; none where a size is out of range.
 pub fn mapping(medium: &Medium, size: [usize; 4]) -> Option<Elek2010> {
-    Elek2010::new(medium.ground_radius, medium.top_radius, size).map(|m| m.with_sun_curve(SUN))
+    Elek2010::new(medium.ground_radius, medium.top_radius, size).map(|m| m.with_curves(SUN, VIEW_POWER))
 }
 
 /// Lists of constituents that share a phase function at every wavelength.
@@ -83,7 +87,12 @@ pub fn tables(medium: &Medium, solution: &Solution, palette: &Palette, sizes: Si
     });
     let negative = sum.iter().flatten().filter(|v| **v < 0.0).count();
     out.push(encode("multiple".into(), "light scattered more than once over 1 - T", sum, &multiple, palette));
-    out.push(table(medium, solution, palette, LAYOUT, &multiple, DEPTH_SIZE, Held::LogOfMean));
+    let depth =
+        |which| table(medium, solution, palette, LAYOUT, &multiple, DEPTH_SIZE, Held::LogOfMean, which);
+    out.push(depth(Matter::All));
+    if medium.constituents.iter().any(|c| !c.scatters()) {
+        out.push(depth(Matter::Scatterers));
+    }
     out.push(irradiance(solution, palette, &multiple));
     if !groups.is_empty() {
         out.push(phase(medium, palette, LAYOUT, &groups));
@@ -122,7 +131,7 @@ fn fill(
                 let (mu, hits_ground) = mapping.mu(altitude, ray % views);
                 painter.ray(mapping.radii()[0] + altitude, mu, hits_ground, &pairs, wanted, light);
                 let source = if wanted == Wanted::Single { &light.single } else { &light.multiple };
-                let inverse = inverse_opacity(light.depth);
+                let inverse = inverse_opacity(light.scatterers_depth);
                 for (texel, value) in out.iter_mut().zip(source) {
                     for &(k, w) in &four {
                         texel[k] = value[w] * inverse[w];

@@ -4,7 +4,7 @@
 //! 4π times its luminance over that of the direct sunlight at the ray's entry: a shader multiplies it by the
 //! phase function and by the colour of that sunlight. Where the sun is behind the planet A is 0.
 
-use super::extinction::{Held, table};
+use super::extinction::{Held, Matter, table};
 use super::palette::Palette;
 use super::tables::{Baked, Channel, axes_of, axis, file_order};
 use crate::export::manifest::{Axis, Encoding};
@@ -57,7 +57,8 @@ pub fn finish(
     ambient: Vec<[f64; 3]>,
 ) -> (Vec<Baked>, Oddities) {
     let (scattering, oddities) = scattering(texels, solution, palette, mapping);
-    let extinction = table(medium, solution, palette, LAYOUT, mapping, EXTINCTION_SIZE, Held::Plain);
+    let extinction =
+        table(medium, solution, palette, LAYOUT, mapping, EXTINCTION_SIZE, Held::Plain, Matter::All);
     (vec![scattering, extinction, irradiance(ambient, mapping)], oddities)
 }
 

@@ -26,6 +26,14 @@ pub enum Held {
     LogOfMean,
 }
 
+/// Whose optical depth a table holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Matter {
+    All,
+    /// All but the constituents that only absorb.
+    Scatterers,
+}
+
 /// Optical depth to the ground or to the top against altitude and view, on the mapping's first two axes at
 /// another size.
 pub fn table(
@@ -36,6 +44,7 @@ pub fn table(
     mapping: &Elek2010,
     size: [usize; 2],
     held: Held,
+    matter: Matter,
 ) -> Baked {
     let [altitudes, views] = size;
     let mapping = mapping.resized([altitudes, views, 2, 2]).expect("a valid size");
@@ -43,7 +52,7 @@ pub fn table(
     depths
         .par_chunks_mut(views)
         .enumerate()
-        .for_each(|(i, out)| row(solution, palette, &mapping, held, i, out));
+        .for_each(|(i, out)| row(solution, palette, &mapping, (held, matter), i, out));
     let offset = if held == Held::Plain { 0.0 } else { typical(medium, palette) };
     let encode = |v: f32| match held {
         Held::Plain => v,
@@ -63,7 +72,7 @@ pub fn table(
     };
     Baked {
         layout: layout.into(),
-        name: "transmittance".into(),
+        name: if matter == Matter::All { "transmittance".into() } else { "scatterers".into() },
         axes: mapping.axes()[..2].iter().map(axis).collect(),
         channels: channels(palette, quantity, unit),
         encoding,
@@ -75,7 +84,7 @@ fn row(
     solution: &Solution,
     palette: &Palette,
     mapping: &Elek2010,
-    held: Held,
+    (held, matter): (Held, Matter),
     i: usize,
     out: &mut [[f32; 4]],
 ) {
@@ -86,7 +95,7 @@ fn row(
         let mus: Vec<f64> = (start..start + half).map(|j| mapping.mu(altitude, j).0).collect();
         for batch in &solution.batches {
             let painter = Painter::new(solution, batch, &[]);
-            let depths = painter.depths(r, &mus, to_ground);
+            let depths = painter.depths(r, &mus, to_ground, matter == Matter::Scatterers);
             for ((texel, depth), mu) in out[start..].iter_mut().zip(depths).zip(&mus) {
                 let length = match held {
                     Held::Plain => 1.0,

@@ -13,6 +13,8 @@ pub struct Compact {
     singles: Vec<Volume>,
     multiple: Volume,
     depth: Plane,
+    /// Optical depth without what only absorbs, where there is such.
+    scatterers: Option<Plane>,
     irradiance: Plane,
     phase: Option<Plane>,
     ground_albedo: Vec<f64>,
@@ -37,6 +39,7 @@ impl Compact {
             singles: names.iter().map(|n| source.volume(n)).collect::<Result<_>>()?,
             multiple: source.volume("multiple")?,
             depth: source.plane("transmittance")?,
+            scatterers: if source.has("scatterers") { Some(source.plane("scatterers")?) } else { None },
             irradiance: source.plane("irradiance")?,
             phase: if names.is_empty() { None } else { Some(source.plane("phase")?) },
             ground_albedo: source.constant("ground_albedo_at_four")?,
@@ -56,8 +59,12 @@ impl Compact {
         let mut out = vec![0.0; count];
         if component != Component::Ground {
             let source = self.mean_source(&place);
+            let scatterers = match &self.scatterers {
+                Some(plane) => plane.depth(place.altitude, place.mu, place.hits_ground),
+                None => depth,
+            };
             for k in 0..count {
-                out[k] -= libm::expm1(-depth[k]) * source[k];
+                out[k] -= libm::expm1(-scatterers[k]) * source[k];
             }
         }
         if component != Component::Scattering && place.hits_ground {

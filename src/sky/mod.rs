@@ -122,6 +122,10 @@ impl Source<'_> {
         }
     }
 
+    fn has(&self, name: &str) -> bool {
+        self.manifest.tables.iter().any(|t| t.layout == self.layout && t.name == name)
+    }
+
     fn volume(&self, name: &str) -> Result<Volume> {
         let (table, atlas) = self.table(name)?;
         Volume::new(table, atlas).map_err(|reason| self.refuse(reason))

@@ -73,10 +73,11 @@ fn mapping(table: &Table, size: [usize; 4]) -> Result<Elek2010, String> {
     let shell = Elek2010::new(constant(0, "r_ground")?, constant(0, "r_top")?, size)
         .ok_or_else(|| format!("{}: sizes {size:?} or radii are out of range", table.name))?;
     let sun = table.axes.iter().position(|a| a.name == "sun");
-    Ok(match sun.map(|k| (constant(k, "shift"), constant(k, "width"))) {
-        Some((Ok(shift), Ok(width))) => shell.with_sun_curve(SunCurve::Rational { shift, width }),
-        _ => shell,
-    })
+    let curve = match sun.map(|k| (constant(k, "shift"), constant(k, "width"))) {
+        Some((Ok(shift), Ok(width))) => SunCurve::Rational { shift, width },
+        _ => SunCurve::Paper,
+    };
+    Ok(shell.with_curves(curve, constant(1, "view_power")?))
 }
 
 /// A table over altitude, view, sun and azimuth.

@@ -47,6 +47,8 @@ pub struct Elek2010 {
     /// Steepness of the sun axis: 2.8 (the paper's) where the axis has the paper's length.
     sun_steepness: f64,
     curve: SunCurve,
+    /// The view axis is even in the power 1/p of the paper's V; 1 is the paper's.
+    view_power: f64,
     size: [usize; 4],
 }
 
@@ -77,19 +79,29 @@ impl Elek2010 {
         let last_light = -(height * (top_radius + ground_radius)).sqrt() / top_radius;
         let mu_s_min = PAPER_MU_S_MIN.min(last_light - MU_S_MARGIN).max(-1.0);
         let sun_steepness = SUN_EXPONENT / (1.0 - mu_s_min);
-        Some(Elek2010 { ground_radius, height, mu_s_min, sun_steepness, curve: SunCurve::Paper, size })
+        Some(Elek2010 {
+            ground_radius,
+            height,
+            mu_s_min,
+            sun_steepness,
+            curve: SunCurve::Paper,
+            view_power: 1.0,
+            size,
+        })
     }
 
-    /// The same mapping with another sun axis.
-    pub fn with_sun_curve(mut self, curve: SunCurve) -> Self {
+    /// The same mapping with another sun axis, and a view axis even in the power 1/`view_power` of the paper's:
+    /// above 1 it is finer near zenith and nadir.
+    pub fn with_curves(mut self, curve: SunCurve, view_power: f64) -> Self {
         self.curve = curve;
+        self.view_power = view_power;
         self
     }
 
     /// The same shell and curves for a table of other size; conditions as for [`Self::new`].
     pub fn resized(&self, size: [usize; 4]) -> Option<Self> {
         Elek2010::new(self.ground_radius, self.ground_radius + self.height, size)
-            .map(|m| m.with_sun_curve(self.curve))
+            .map(|m| m.with_curves(self.curve, self.view_power))
     }
 
     /// Radius of the ground and of the top, m.
@@ -195,7 +207,8 @@ impl Elek2010 {
             return f64::from(u8::from(mu >= 0.0));
         }
         let distance = self.distance(altitude, mu, hits_ground);
-        ((distance - shortest) / (longest - shortest)).clamp(0.0, 1.0)
+        let paper = ((distance - shortest) / (longest - shortest)).clamp(0.0, 1.0);
+        if self.view_power == 1.0 { paper } else { libm::pow(paper, 1.0 / self.view_power) }
     }
 
     /// Cosine of the view zenith angle, and whether the ray hits the ground, of view texel `j` at an altitude.
@@ -210,7 +223,8 @@ impl Elek2010 {
         }
         let horizon = self.horizon_mu(altitude);
         let (shortest, longest) = self.distances(altitude, hits_ground);
-        let x = step as f64 / (half - 1) as f64;
+        let even = step as f64 / (half - 1) as f64;
+        let x = if self.view_power == 1.0 { even } else { libm::pow(even, self.view_power) };
         let distance = shortest + x * (longest - shortest);
         if step + 1 == half || distance == 0.0 {
             return (horizon, hits_ground);
@@ -321,13 +335,13 @@ impl Elek2010 {
             AxisFormula {
                 name: "view",
                 size: self.size[1],
-                coordinate: "V = (d - d_min) / (d_max - d_min). First half of the texels, rays that hit the \
+                coordinate: "V = ((d - d_min) / (d_max - d_min))^(1 / view_power). First half of the texels, rays that hit the \
                     ground: d = -r mu - sqrt(r^2 mu^2 - Z1^2), d_min = r - r_ground, d_max = Z1. Second half, \
                     rays that do not: d = -r mu + sqrt(r^2 mu^2 - Z1^2 + Z2^2), d_min = r_top - r, \
                     d_max = Z1 + Z2. Never filter across the halves",
-                inverse: "d = d_min + V (d_max - d_min). First half: mu = -(Z1^2 + d^2) / (2 r d). Second \
+                inverse: "d = d_min + V^view_power (d_max - d_min). First half: mu = -(Z1^2 + d^2) / (2 r d). Second \
                     half: mu = (Z2^2 - Z1^2 - d^2) / (2 r d)",
-                constants: radii,
+                constants: [radii, vec![("view_power", self.view_power)]].concat(),
             },
             self.sun_axis(),
             AxisFormula {

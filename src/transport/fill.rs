@@ -21,6 +21,8 @@ pub struct Painter<'a> {
     batch: &'a Batch,
     axis: SunAxis,
     groups: Vec<Group>,
+    /// Extinction per constituent, 0 for those that only absorb.
+    scatterers: Vec<Lanes>,
 }
 
 struct Group {
@@ -48,8 +50,9 @@ pub struct RayLight {
     pub single: Vec<Lanes>,
     /// Scattered more often, 1/sr.
     pub multiple: Vec<Lanes>,
-    /// Optical depth of the ray.
+    /// Optical depth of the ray, and without the constituents that only absorb.
     pub depth: Lanes,
+    pub scatterers_depth: Lanes,
     scratch: Scratch,
     deeper: Vec<Lanes>,
 }
@@ -59,12 +62,16 @@ impl<'a> Painter<'a> {
     pub fn new(solution: &'a Solution, batch: &'a Batch, groups: &[Vec<usize>]) -> Self {
         let axis = solution.geometry.axis.refined(REFINEMENT);
         let groups = groups.iter().filter(|g| !g.is_empty()).map(|g| group(solution, batch, g)).collect();
-        Painter { solution, batch, axis, groups }
+        let optics = &batch.optics;
+        let scatterers = (0..optics.extinction.len())
+            .map(|c| if optics.scattering[c] == Lanes::ZERO { Lanes::ZERO } else { optics.extinction[c] })
+            .collect();
+        Painter { solution, batch, axis, groups, scatterers }
     }
 
     /// Optical depths of rays from radius `r`, to the ground or to the top: `mus` fall from the zenith (or, to
-    /// the ground, rise from the nadir) to the horizon.
-    pub fn depths(&self, r: f64, mus: &[f64], to_ground: bool) -> Vec<Lanes> {
+    /// the ground, rise from the nadir) to the horizon. Constituents that only absorb may be left out.
+    pub fn depths(&self, r: f64, mus: &[f64], to_ground: bool, scatterers_only: bool) -> Vec<Lanes> {
         let shells = &self.solution.geometry.shells;
         let ground = shells.edges[0];
         let b2: Vec<f64> = mus.iter().map(|mu| r * r * (1.0 - mu * mu)).collect();
@@ -82,7 +89,9 @@ impl<'a> Painter<'a> {
         );
         let depth = |n: usize| {
             let mut sum = Lanes::ZERO;
-            for (c, e) in self.batch.optics.extinction.iter().enumerate() {
+            let optics = &self.batch.optics;
+            let counts = |c: usize| !scatterers_only || optics.scattering[c] != Lanes::ZERO;
+            for (c, e) in optics.extinction.iter().enumerate().filter(|(c, _)| counts(*c)) {
                 sum += *e * columns[c * mus.len() + n] as f32;
             }
             sum
@@ -109,6 +118,7 @@ impl<'a> Painter<'a> {
             || {
                 let ray = Ray::new(&path, &geometry.levels, &self.batch.optics.extinction, false);
                 out.depth = ray.depth;
+                out.scatterers_depth = *path.depths(&self.scatterers).last().expect("a path has a stop");
                 if wanted != Wanted::Single {
                     self.multiple(&path, mu as f32, pairs, out);
                 }
