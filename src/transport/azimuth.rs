@@ -78,12 +78,37 @@ impl SunAxis {
     pub fn locate(&self, mu_s: f32) -> (u32, f32) {
         let u = mu_s + SHIFT as f32;
         let x = (u / (u.abs() + WIDTH as f32) - self.lowest_x) * self.scale;
-        let last = (self.mu_s.len() - 2) as f32;
-        let x0 = if x > 0.0 { x } else { 0.0 };
-        let whole = (if x0 < last { x0 } else { last }).floor();
-        let t = if x0 - whole < 1.0 { x0 - whole } else { 1.0 };
-        (whole as i32 as u32, if mu_s < self.lowest { -1.0 } else { t })
+        let (node, t) = node_and_place(x, self.mu_s.len());
+        (node, if mu_s < self.lowest { -1.0 } else { t })
     }
+
+    /// The same for many sun positions: nodes, and the weights of each and of the next one, 0 where it is dark.
+    #[inline(always)]
+    pub fn locate_all(&self, mu_s: &[f32], nodes: &mut [u32], low: &mut [f32], high: &mut [f32]) {
+        for (((mu_s, node), low), high) in mu_s.iter().zip(nodes).zip(low).zip(high) {
+            let u = mu_s + SHIFT as f32;
+            let x = (u / (u.abs() + WIDTH as f32) - self.lowest_x) * self.scale;
+            let (n, t) = node_and_place(x, self.mu_s.len());
+            let lit = if *mu_s < self.lowest { 0.0 } else { 1.0 };
+            *node = n;
+            *low = (1.0 - t) * lit;
+            *high = t * lit;
+        }
+    }
+}
+
+/// The node below a place x on an axis of `count` nodes, at most count − 2, and the place 0..1 between it and
+/// the next. The integer is read from the bits of x + 2²³: a conversion would saturate, and not vectorise.
+#[inline(always)]
+pub fn node_and_place(x: f32, count: usize) -> (u32, f32) {
+    const ROUND: f32 = 8_388_608.0;
+    let last = (count - 2) as f32;
+    let x = if x > 0.0 { x } else { 0.0 };
+    let down = if x > 0.5 { x - 0.5 } else { 0.0 };
+    let shifted = (if down < last { down } else { last }) + ROUND;
+    let t = x - (shifted - ROUND);
+    let t = if t < 1.0 { t } else { 1.0 };
+    (shifted.to_bits() & 0x007f_ffff, if t > 0.0 { t } else { 0.0 })
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 //! planet's shadow; transmittance to the sun integrated afresh at every point; cubic interpolation of the
 //! field. Slow (about half a millisecond a view) and careful.
 
+use super::kernels::azimuth_factor;
 use super::levels::locate;
 use super::optics::Optics;
 use super::quadrature::horizon_cosine;
@@ -221,9 +222,9 @@ impl Solution {
     /// P̄_lm(mu) sin^m θ s^min(m,2) cos mφ for every term.
     fn angular_factors(&self, mu: f64, mu_s: f64, nu: f64) -> Vec<f64> {
         let (sine2, s2) = ((1.0 - mu * mu).max(0.0), (1.0 - mu_s * mu_s).max(0.0));
-        let mut q = vec![0.0f32; self.basis.modes];
         let x = (nu - mu * mu_s) as f32;
-        super::kernels::azimuth_factors(x, s2 as f32, sine2 as f32, sine2.sqrt() as f32, &mut q);
+        let factor = |m| azimuth_factor(m, x, s2 as f32, sine2 as f32);
+        let q: Vec<f32> = (0..self.basis.modes).map(factor).collect();
         let p = self.basis.polynomials(mu);
         p.iter().zip(&self.basis.orders).map(|(p, &m)| p * f64::from(q[m])).collect()
     }

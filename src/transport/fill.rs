@@ -1,7 +1,7 @@
 //! Light along one ray for many sun positions at once: what tables are filled from.
 
 use super::azimuth::{Pairs, SunAxis};
-use super::kernels::{self, Field, Scratch, SingleGroup, SingleLight};
+use super::kernels::{self, Field, Scratch, SingleGroup};
 use super::moments::Basis;
 use super::operator::kernel_for;
 use super::optics::{Optics, PhaseLanes};
@@ -144,26 +144,21 @@ impl<'a> Painter<'a> {
     fn single(&self, path: &Path, ray: &Ray, mu: f32, pairs: &Pairs, out: &mut RayLight) {
         let optics = &self.batch.optics;
         let count = pairs.len();
-        for (g, group) in self.groups.iter().enumerate() {
-            let once = &mut out.single[g * count..][..count];
-            out.deeper.clear();
-            let peaked = group.single.deeper.is_some();
-            out.deeper.resize(if peaked { count } else { 0 }, Lanes::ZERO);
-            let behind = if peaked { path.depths(&group.scattering) } else { Vec::new() };
-            let mut light = SingleLight { once, deeper: &mut out.deeper };
-            kernels::single(
-                ray,
-                &self.batch.sunlight,
-                &group.single,
-                &behind,
-                pairs,
-                &mut out.scratch,
-                &mut light,
-            );
-            if peaked {
-                let multiple = &mut out.multiple[g * count..][..count];
-                self.add_peak(optics, group, mu, pairs, once, multiple, &out.deeper);
-            }
+        let groups: Vec<&SingleGroup> = self.groups.iter().map(|g| &g.single).collect();
+        let peaked = |g: &Group| g.single.deeper.is_some();
+        let behind: Vec<Vec<Lanes>> = self
+            .groups
+            .iter()
+            .map(|g| if peaked(g) { path.depths(&g.scattering) } else { Vec::new() })
+            .collect();
+        out.deeper.clear();
+        out.deeper.resize(if self.groups.iter().any(peaked) { out.single.len() } else { 0 }, Lanes::ZERO);
+        let RayLight { single, deeper, scratch, .. } = out;
+        kernels::single(ray, &self.batch.sunlight, &groups, &behind, pairs, scratch, single, deeper);
+        for (g, group) in self.groups.iter().enumerate().filter(|(_, group)| peaked(group)) {
+            let range = g * count..(g + 1) * count;
+            let (once, multiple) = (&mut out.single[range.clone()], &mut out.multiple[range.clone()]);
+            self.add_peak(optics, group, mu, pairs, once, multiple, &out.deeper[range]);
         }
     }
 

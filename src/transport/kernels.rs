@@ -1,13 +1,16 @@
 //! The two hot loops: light scattered once and light scattered more often, along one ray, for many sun
 //! positions at a time and all wavelengths of a batch.
+//!
+//! Both first find, for all sun positions at once, where a sample looks things up (loops over plain arrays,
+//! which become vector code), then gather whole vectors of wavelengths from there.
 
 use super::azimuth::{Pairs, SunAxis};
 use super::moments::{Basis, MOST_TERMS};
-use super::rays::Ray;
+use super::rays::{Ray, Sample};
 use super::sunlight::Sunlight;
 use crate::lanes::Lanes;
 
-/// Sources of multiply scattered light per unit extinction, `[level][sun node][term]`: (2l+1)/4π Σ f χ_l I_lm.
+/// Sources of multiply scattered light, `[level][sun node][term]`: (2l+1)/4π Σ f χ_l I_lm.
 #[derive(Clone, Debug)]
 pub struct Field {
     pub terms: usize,
@@ -17,11 +20,31 @@ pub struct Field {
 /// Room for a kernel's intermediate values, reused from ray to ray.
 #[derive(Default)]
 pub struct Scratch {
-    nodes: Vec<u32>,
-    weights: Vec<[f32; 2]>,
     sun: Vec<f32>,
-    modes: Vec<f32>,
+    nodes: Vec<u32>,
+    low: Vec<f32>,
+    high: Vec<f32>,
+    /// `[factor][pair]`
+    factors: Vec<f32>,
     collapsed: Vec<Lanes>,
+}
+
+impl Scratch {
+    #[inline(always)]
+    fn resize(&mut self, count: usize) {
+        self.sun.resize(count, 0.0);
+        self.nodes.resize(count, 0);
+        self.low.resize(count, 0.0);
+        self.high.resize(count, 0.0);
+    }
+
+    /// The sun's zenith cosine at a sample, for all pairs.
+    #[inline(always)]
+    fn turn_sun(&mut self, sample: &Sample, pairs: &Pairs) {
+        for ((sun, mu_s), across) in self.sun.iter_mut().zip(&pairs.mu_s).zip(&pairs.across) {
+            *sun = mu_s * sample.cos_turn + across * sample.sin_turn;
+        }
+    }
 }
 
 /// Adds to `out` (one value a pair) the light scattered more than once that arrives along the ray.
@@ -38,30 +61,25 @@ pub fn multiple<const MODES: usize>(
 ) {
     let count = pairs.len();
     let suns = axis.len();
-    scratch.nodes.resize(count, 0);
-    scratch.modes.resize(count * MODES * 2, 0.0);
+    scratch.resize(count);
+    scratch.factors.resize(count * MODES * 2, 0.0);
     scratch.collapsed.resize(suns * MODES, Lanes::ZERO);
-    let sine = (1.0 - mu * mu).max(0.0).sqrt();
     for sample in &ray.samples {
-        collapse::<MODES>(
-            sample.level as usize,
-            sample.place,
-            sample.mu,
-            field,
-            suns,
-            basis,
-            &mut scratch.collapsed,
-        );
-        place_pairs::<MODES>(sample, mu, sine, axis, pairs, &mut scratch.nodes, &mut scratch.modes);
+        collapse::<MODES>(sample, field, suns, basis, &mut scratch.collapsed);
+        scratch.turn_sun(sample, pairs);
+        axis.locate_all(&scratch.sun, &mut scratch.nodes, &mut scratch.low, &mut scratch.high);
+        place_pairs::<MODES>(sample, mu, pairs, scratch);
         let collapsed = &scratch.collapsed[..suns * MODES];
-        for ((out, node), modes) in
-            out.iter_mut().zip(&scratch.nodes).zip(scratch.modes.chunks_exact(2 * MODES))
-        {
+        let factors: [&[f32]; 2] = {
+            let (low, high) = scratch.factors.split_at(count * MODES);
+            [low, &high[..count * MODES]]
+        };
+        for (p, (out, node)) in out.iter_mut().zip(&scratch.nodes).enumerate() {
             let at = *node as usize * MODES;
             let two = &collapsed[at..at + 2 * MODES];
-            let mut sum = two[0] * modes[0];
-            for m in 1..2 * MODES {
-                sum += two[m] * modes[m];
+            let mut sum = two[0] * factors[0][p] + two[MODES] * factors[1][p];
+            for m in 1..MODES {
+                sum += two[m] * factors[0][m * count + p] + two[MODES + m] * factors[1][m * count + p];
             }
             *out += sum * sample.weight;
         }
@@ -71,101 +89,136 @@ pub fn multiple<const MODES: usize>(
 /// Sums the terms over degrees at a sample's own direction: one value a sun node and order.
 #[inline(always)]
 fn collapse<const MODES: usize>(
-    level: usize,
-    place: f32,
-    mu: f32,
+    sample: &Sample,
     field: &Field,
     suns: usize,
     basis: &Basis,
     out: &mut [Lanes],
 ) {
     let mut p = [0.0; MOST_TERMS];
-    basis.fill(f64::from(mu), &mut p);
-    let p = &p[..field.terms];
-    let stride = suns * field.terms;
+    basis.fill(f64::from(sample.mu), &mut p);
+    let terms = field.terms;
+    let stride = suns * terms;
+    let level = sample.level as usize;
     let below = &field.values[level * stride..][..stride];
-    out[..suns * MODES].fill(Lanes::ZERO);
-    if place < 1.0 {
-        add_terms::<MODES>(below, field.terms, p, &basis.orders, 1.0 - place, out);
+    if sample.place == 0.0 {
+        sum_terms::<MODES>(below, terms, &p, basis, out);
+        return;
     }
-    if place > 0.0 {
-        let above = &field.values[(level + 1) * stride..][..stride];
-        add_terms::<MODES>(above, field.terms, p, &basis.orders, place, out);
+    let above = &field.values[(level + 1) * stride..][..stride];
+    if sample.place == 1.0 {
+        sum_terms::<MODES>(above, terms, &p, basis, out);
+        return;
+    }
+    for (node, out) in out.chunks_exact_mut(MODES).enumerate() {
+        let (below, above) = (&below[node * terms..][..terms], &above[node * terms..][..terms]);
+        for (m, out) in out.iter_mut().enumerate() {
+            let mut sum = Lanes::ZERO;
+            for t in basis.of_order(m) {
+                sum += (below[t] * (1.0 - sample.place) + above[t] * sample.place) * p[t];
+            }
+            *out = sum;
+        }
     }
 }
 
 #[inline(always)]
-fn add_terms<const MODES: usize>(
+fn sum_terms<const MODES: usize>(
     from: &[Lanes],
     terms: usize,
-    p: &[f32],
-    orders: &[usize],
-    weight: f32,
+    p: &[f32; MOST_TERMS],
+    basis: &Basis,
     out: &mut [Lanes],
 ) {
     for (node, out) in from.chunks_exact(terms).zip(out.chunks_exact_mut(MODES)) {
-        for t in 0..terms {
-            out[orders[t]] += node[t] * (weight * p[t]);
+        for (m, out) in out.iter_mut().enumerate() {
+            let mut sum = Lanes::ZERO;
+            for t in basis.of_order(m) {
+                sum += node[t] * p[t];
+            }
+            *out = sum;
         }
     }
 }
 
-/// For every pair: the sun node below, and for it and the next one the factor of every order,
-/// sin^m θ s^min(m,2) cos mφ at the sample times the interpolation weight.
+/// For every pair and order m the factor sin^m θ s^min(m,2) cos mφ at the sample, times the weight of the sun
+/// node below and of the next one. From X = nu − mu mu_s = sinθ s cosφ, by cos (m+1)φ = 2 cosφ cos mφ −
+/// cos (m−1)φ; cosφ is bounded, and where it is ill-defined the factors in front of it vanish.
 #[inline(always)]
-fn place_pairs<const MODES: usize>(
-    sample: &super::rays::Sample,
-    mu: f32,
-    sine: f32,
-    axis: &SunAxis,
-    pairs: &Pairs,
-    nodes: &mut [u32],
-    modes: &mut [f32],
-) {
+fn place_pairs<const MODES: usize>(sample: &Sample, mu: f32, pairs: &Pairs, scratch: &mut Scratch) {
+    const CHUNK: usize = 16;
+    let count = pairs.len();
+    let sine = (1.0 - mu * mu).max(0.0).sqrt();
     let sine2 = (1.0 - sample.mu * sample.mu).max(0.0);
     let local_sine = sine2.sqrt();
-    for (p, (node, factors)) in nodes.iter_mut().zip(modes.chunks_exact_mut(2 * MODES)).enumerate() {
-        let mu_s = pairs.mu_s[p] * sample.cos_turn + pairs.across[p] * sample.sin_turn;
-        let nu = pairs.mu_s[p] * mu + pairs.across[p] * sine;
-        let (n, t) = axis.locate(mu_s);
-        *node = n;
-        let s2 = 1.0 - mu_s * mu_s;
-        let s2 = if s2 > 0.0 { s2 } else { 0.0 };
-        let x = nu - sample.mu * mu_s;
-        let lit = if t < 0.0 { 0.0 } else { 1.0 };
-        let mut q = [0.0f32; MODES];
-        azimuth_factors(x, s2, sine2, local_sine, &mut q);
-        for m in 0..MODES {
-            factors[m] = q[m] * (1.0 - t) * lit;
-            factors[MODES + m] = q[m] * t * lit;
+    let (low, high) = scratch.factors.split_at_mut(count * MODES);
+    for from in (0..count).step_by(CHUNK) {
+        let n = CHUNK.min(count - from);
+        // The last chunk is filled up with copies of its first pair.
+        let pair = |k: usize| from + if k < n { k } else { 0 };
+        let (mut x, mut y, mut c) = ([0.0f32; CHUNK], [0.0f32; CHUNK], [0.0f32; CHUNK]);
+        for k in 0..CHUNK {
+            let p = pair(k);
+            let sun = scratch.sun[p];
+            let s2 = 1.0 - sun * sun;
+            x[k] = pairs.mu_s[p] * mu + pairs.across[p] * sine - sample.mu * sun;
+            y[k] = (if s2 > 0.0 { s2 } else { 0.0 }) * sine2;
+        }
+        for k in 0..CHUNK {
+            let length = y[k].sqrt();
+            let ratio = x[k] / if length > 1e-6 { length } else { 1e-6 };
+            let ratio = if ratio > 1.0 { 1.0 } else { ratio };
+            c[k] = if ratio < -1.0 { -1.0 } else { ratio };
+        }
+        let mut q = [[0.0f32; CHUNK]; MODES];
+        let (mut before, mut now, mut power) = (c, [0.0f32; CHUNK], y);
+        for k in 0..CHUNK {
+            now[k] = 2.0 * c[k] * c[k] - 1.0;
+            q[0][k] = 1.0;
+            if MODES > 1 {
+                q[1][k] = x[k];
+            }
+            if MODES > 2 {
+                q[2][k] = 2.0 * x[k] * x[k] - y[k];
+            }
+        }
+        for q in q.iter_mut().skip(3) {
+            for k in 0..CHUNK {
+                let next = 2.0 * c[k] * now[k] - before[k];
+                before[k] = now[k];
+                now[k] = next;
+                power[k] *= local_sine;
+                q[k] = power[k] * next;
+            }
+        }
+        for (m, q) in q.iter().enumerate() {
+            let at = m * count + from;
+            let weights = scratch.low[from..from + n].iter().zip(&scratch.high[from..from + n]);
+            let out = low[at..at + n].iter_mut().zip(&mut high[at..at + n]);
+            for (((low, high), (w0, w1)), q) in out.zip(weights).zip(q) {
+                *low = q * w0;
+                *high = q * w1;
+            }
         }
     }
 }
 
-/// sin^m θ s^min(m,2) cos mφ from X = nu − mu mu_s = sinθ s cosφ.
-#[inline(always)]
-pub fn azimuth_factors(x: f32, s2: f32, sine2: f32, sine: f32, q: &mut [f32]) {
-    q[0] = 1.0;
-    if q.len() > 1 {
-        q[1] = x;
-    }
-    if q.len() > 2 {
-        let y = s2 * sine2;
-        q[2] = 2.0 * x * x - y;
-        if q.len() > 3 {
-            // cos φ itself, bounded: where it is ill-defined the factors in front of it vanish.
-            let length = y.sqrt();
-            let c = x / if length > 1e-6 { length } else { 1e-6 };
-            let c = if c > 1.0 { 1.0 } else { c };
-            let c = if c < -1.0 { -1.0 } else { c };
+/// The same factor for one pair: sin^m θ s^min(m,2) cos mφ.
+pub fn azimuth_factor(m: usize, x: f32, s2: f32, sine2: f32) -> f32 {
+    let y = s2 * sine2;
+    match m {
+        0 => 1.0,
+        1 => x,
+        2 => 2.0 * x * x - y,
+        _ => {
+            let c = (x / y.sqrt().max(1e-6)).clamp(-1.0, 1.0);
             let (mut before, mut now) = (c, 2.0 * c * c - 1.0);
-            let mut power = s2 * sine2;
-            for slot in q.iter_mut().skip(3) {
-                let next = 2.0 * c * now - before;
-                (before, now) = (now, next);
-                power *= sine;
-                *slot = power * next;
+            let mut power = y;
+            for _ in 2..m {
+                (before, now) = (now, 2.0 * c * now - before);
+                power *= sine2.sqrt();
             }
+            power * now
         }
     }
 }
@@ -178,44 +231,53 @@ pub struct SingleGroup {
     pub deeper: Option<Vec<Lanes>>,
 }
 
-/// Single scattering without its phase function, one value a pair: I, and with a forward peak the integral of
-/// the same light weighted by the scattering depths that it crosses to the eye and to the sun.
-pub struct SingleLight<'a> {
-    pub once: &'a mut [Lanes],
-    pub deeper: &'a mut [Lanes],
-}
-
-/// Adds the light of one group scattered once that arrives along the ray. `behind`: scattering depth of the
-/// group from the start to each sample (not read for groups without a peak).
+/// Adds to `once` (`[group][pair]`) the light of each group scattered once that arrives along the ray, without
+/// its phase function; and to `deeper`, for groups with a forward peak, the same light weighted by the
+/// scattering depths that it crosses to the eye and to the sun. `behind[group]`: scattering depth of the group
+/// from the start to each sample (not read for groups without a peak).
 #[inline(always)]
 pub fn single(
     ray: &Ray,
     sunlight: &Sunlight,
-    group: &SingleGroup,
-    behind: &[Lanes],
+    groups: &[&SingleGroup],
+    behind: &[Vec<Lanes>],
     pairs: &Pairs,
     scratch: &mut Scratch,
-    out: &mut SingleLight,
+    once: &mut [Lanes],
+    deeper: &mut [Lanes],
 ) {
     let count = pairs.len();
-    scratch.nodes.resize(count, 0);
-    scratch.weights.resize(count, [0.0; 2]);
-    scratch.sun.resize(count, 0.0);
+    scratch.resize(count);
     for (k, sample) in ray.samples.iter().enumerate() {
-        for (p, sun) in scratch.sun.iter_mut().enumerate() {
-            *sun = pairs.mu_s[p] * sample.cos_turn + pairs.across[p] * sample.sin_turn;
-        }
-        for (level, share) in
-            [(sample.level as usize, 1.0 - sample.place), (sample.level as usize + 1, sample.place)]
-        {
-            if share > 0.0 {
-                sunlight.locate(level, &scratch.sun, &mut scratch.nodes, &mut scratch.weights);
-                let factor = sample.weight * share * group.shares[level];
-                let table = sunlight.level(level);
-                add_light(table, factor, scratch, out.once);
-                if let Some(deeper) = &group.deeper {
-                    add_light(table, factor * behind[k], scratch, out.deeper);
-                    add_light(sunlight.level_of(deeper, level), factor, scratch, out.deeper);
+        scratch.turn_sun(sample, pairs);
+        let level = sample.level as usize;
+        for (level, share) in [(level, 1.0 - sample.place), (level + 1, sample.place)] {
+            if share <= 0.0 {
+                continue;
+            }
+            sunlight.locate(level, &scratch.sun, &mut scratch.nodes, &mut scratch.low, &mut scratch.high);
+            let table = sunlight.level(level);
+            let weight = sample.weight * share;
+            let factors = groups.iter().map(|g| weight * g.shares[level]);
+            match groups {
+                [] => {}
+                [a] => add_light(table, [weight * a.shares[level]], scratch, [&mut once[..count]]),
+                [a, b] => {
+                    let (first, second) = once.split_at_mut(count);
+                    let factors = [weight * a.shares[level], weight * b.shares[level]];
+                    add_light(table, factors, scratch, [first, &mut second[..count]]);
+                }
+                _ => {
+                    for (factor, once) in factors.clone().zip(once.chunks_exact_mut(count)) {
+                        add_light(table, [factor], scratch, [once]);
+                    }
+                }
+            }
+            for ((g, group), factor) in groups.iter().enumerate().zip(factors) {
+                if let Some(depths) = &group.deeper {
+                    let out = &mut deeper[g * count..][..count];
+                    let depths = sunlight.level_of(depths, level);
+                    add_deeper(table, depths, factor, factor * behind[g][k], scratch, out);
                 }
             }
         }
@@ -223,9 +285,35 @@ pub fn single(
 }
 
 #[inline(always)]
-fn add_light(table: &[Lanes], factor: Lanes, scratch: &Scratch, out: &mut [Lanes]) {
-    for ((out, node), w) in out.iter_mut().zip(&scratch.nodes).zip(&scratch.weights) {
-        let n = *node as usize;
-        *out += (table[n] * w[0] + table[n + 1] * w[1]) * factor;
+fn add_light<const N: usize>(
+    table: &[Lanes],
+    factors: [Lanes; N],
+    scratch: &Scratch,
+    out: [&mut [Lanes]; N],
+) {
+    let places = scratch.nodes.iter().zip(&scratch.low).zip(&scratch.high);
+    for (p, ((node, low), high)) in places.enumerate() {
+        let two = &table[*node as usize..][..2];
+        let light = two[0] * *low + two[1] * *high;
+        for g in 0..N {
+            out[g][p] += light * factors[g];
+        }
+    }
+}
+
+#[inline(always)]
+fn add_deeper(
+    table: &[Lanes],
+    depths: &[Lanes],
+    factor: Lanes,
+    behind: Lanes,
+    scratch: &Scratch,
+    out: &mut [Lanes],
+) {
+    let places = scratch.nodes.iter().zip(&scratch.low).zip(&scratch.high);
+    for (out, ((node, low), high)) in out.iter_mut().zip(places) {
+        let two = &table[*node as usize..][..2];
+        let more = &depths[*node as usize..][..2];
+        *out += (two[0] * *low + two[1] * *high) * behind + (more[0] * *low + more[1] * *high) * factor;
     }
 }

@@ -16,6 +16,8 @@ pub struct Basis {
     pub modes: usize,
     /// Order m of each term.
     pub orders: Vec<usize>,
+    /// Where the terms of each order begin, and one more.
+    starts: Vec<usize>,
     norms: Vec<f64>,
 }
 
@@ -32,12 +34,19 @@ impl Basis {
             terms.extend(degrees.iter().filter(|&&l| l >= m).map(|&l| (l, m)));
         }
         let norms = terms.iter().map(|&(l, m)| norm(l, m)).collect();
-        let orders = terms.iter().map(|t| t.1).collect();
-        Basis { terms, modes: largest + 1, orders, norms }
+        let orders: Vec<usize> = terms.iter().map(|t| t.1).collect();
+        let starts = (0..=MOST_DEGREE + 1).map(|m| orders.partition_point(|&o| o < m)).collect();
+        Basis { terms, modes: largest + 1, orders, starts, norms }
     }
 
     pub fn len(&self) -> usize {
         self.terms.len()
+    }
+
+    /// Numbers of the terms of an order.
+    #[inline(always)]
+    pub fn of_order(&self, m: usize) -> std::ops::Range<usize> {
+        self.starts[m]..self.starts[m + 1]
     }
 
     /// P̄_lm(mu) for every term.

@@ -2,7 +2,7 @@
 
 use super::azimuth::{Pairs, SunAxis, midpoint_azimuths};
 use super::column::Shells;
-use super::kernels::{self, Field, Scratch, SingleGroup, SingleLight};
+use super::kernels::{self, Field, Scratch, SingleGroup};
 use super::levels::Levels;
 use super::moments::Basis;
 use super::optics::Optics;
@@ -192,10 +192,8 @@ impl<'a> Operator<'a> {
                 let (d, path) = &geometry.gathers[level].directions[j];
                 let ray = Ray::new(path, &geometry.levels, &self.optics.extinction, false);
                 let mut once = vec![Lanes::ZERO; groups.len() * pairs.len()];
-                for (group, once) in groups.iter().zip(once.chunks_exact_mut(pairs.len())) {
-                    let mut light = SingleLight { once, deeper: &mut [] };
-                    kernels::single(&ray, self.sunlight, group, &[], &pairs, scratch, &mut light);
-                }
+                let groups: Vec<&SingleGroup> = groups.iter().collect();
+                kernels::single(&ray, self.sunlight, &groups, &[], &pairs, scratch, &mut once, &mut []);
                 self.add_phases(d.mu as f32, &pairs, &once, out);
                 if let Some(hit) = &ray.hit {
                     let factor = hit.transmittance * self.optics.albedo * FRAC_1_PI as f32;

@@ -1,5 +1,6 @@
 //! Transmittance towards the sun, tabulated for each fine level against the distance to the top.
 
+use super::azimuth::node_and_place;
 use super::column::Shells;
 use super::levels::Levels;
 use super::quadrature::horizon_cosine;
@@ -122,19 +123,16 @@ impl Sunlight {
     /// Places of sun cosines in the table of one level: node numbers and the weights of the node and the next
     /// one, both 0 behind the planet.
     #[inline(always)]
-    pub fn locate(&self, level: usize, mu_s: &[f32], node: &mut [u32], weights: &mut [[f32; 2]]) {
+    pub fn locate(&self, level: usize, mu_s: &[f32], nodes: &mut [u32], low: &mut [f32], high: &mut [f32]) {
         let a = self.axis[level];
-        let last = (self.nodes - 2) as f32;
-        for ((mu, n), w) in mu_s.iter().zip(node.iter_mut()).zip(weights.iter_mut()) {
+        for (((mu, node), low), high) in mu_s.iter().zip(nodes).zip(low).zip(high) {
             let along = a.r * mu;
             let d = (along * along + a.depth2).sqrt() - along;
-            let x = (d - a.shortest) * a.scale;
-            let x = if x > 0.0 { x } else { 0.0 };
-            let whole = (if x < last { x } else { last }).floor();
-            let t = if x - whole < 1.0 { x - whole } else { 1.0 };
+            let (n, t) = node_and_place((d - a.shortest) * a.scale, self.nodes);
             let lit = if *mu >= a.horizon { 1.0 } else { 0.0 };
-            *n = whole as i32 as u32;
-            *w = [(1.0 - t) * lit, t * lit];
+            *node = n;
+            *low = (1.0 - t) * lit;
+            *high = t * lit;
         }
     }
 
@@ -153,11 +151,10 @@ impl Sunlight {
     /// Transmittance from a level to a sun of zenith cosine `mu_s`.
     #[inline(always)]
     pub fn at(&self, level: usize, mu_s: f32) -> Lanes {
-        let (mut node, mut weight) = ([0u32], [[0.0f32; 2]]);
-        self.locate(level, &[mu_s], &mut node, &mut weight);
-        let values = self.level(level);
-        let n = node[0] as usize;
-        values[n] * weight[0][0] + values[n + 1] * weight[0][1]
+        let (mut node, mut low, mut high) = ([0u32], [0.0f32], [0.0f32]);
+        self.locate(level, &[mu_s], &mut node, &mut low, &mut high);
+        let two = &self.level(level)[node[0] as usize..][..2];
+        two[0] * low[0] + two[1] * high[0]
     }
 }
 
