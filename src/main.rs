@@ -1,6 +1,7 @@
 //! Arguments → command → exit code.
 
 use clap::Parser;
+use std::io::Write;
 use tyndall::commands::{bake, colour, presets, reference, sample, verify};
 
 /// Offline baker of lookup tables for planetary atmospheres
@@ -22,7 +23,8 @@ fn main() -> std::process::ExitCode {
     match result {
         Ok(()) => std::process::ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            // Not eprintln, which panics where nobody reads stderr: the exit code would be lost.
+            let _ = writeln!(std::io::stderr(), "error: {error}");
             error.exit_code().into()
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -27,7 +28,8 @@ fn stop() {
     STOPPED.store(true, Ordering::SeqCst);
     let live = lock();
     live.iter().for_each(|folder| remove(folder));
-    eprintln!("tyndall: {}", Error::Interrupted);
+    // Not eprintln, which panics where stderr is gone with its terminal: the process would then run on.
+    let _ = writeln!(std::io::stderr(), "tyndall: {}", Error::Interrupted);
     std::process::exit(i32::from(Error::Interrupted.exit_code()));
 }
 

@@ -51,6 +51,22 @@ fn the_old_bake_is_whole() {
     assert!(files(&old) == before);
 }
 
+/// A closed terminal takes stderr with it: the bake ends all the same.
+#[test]
+fn nobody_reads_what_it_says() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut child = long_bake(dir.path());
+    drop(child.stderr.take());
+    signal(&child, "-TERM");
+    let start = Instant::now();
+    while child.try_wait().unwrap().is_none() && start.elapsed() < Duration::from_secs(20) {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    // Ends it if it did not end by itself, so that a failure leaves no process behind.
+    let _ = child.kill();
+    assert_eq!((child.wait().unwrap().code(), names(dir.path())), (Some(3), vec![]));
+}
+
 /// Two processes bake different planets of one name into one folder: both succeed, and what stands at the end
 /// is all of one of them.
 #[test]
