@@ -64,7 +64,8 @@ pub fn multiple<const MODES: usize>(
     scratch.resize(count);
     scratch.factors.resize(count * MODES * 2, 0.0);
     scratch.collapsed.resize(suns * MODES, Lanes::ZERO);
-    for sample in &ray.samples {
+    let least = NEGLIGIBLE * ray.samples.iter().map(|s| largest(s.weight)).fold(0.0, f32::max);
+    for sample in ray.samples.iter().filter(|s| largest(s.weight) > least) {
         collapse::<MODES>(sample, field, suns, basis, &mut scratch.collapsed);
         scratch.turn_sun(sample, pairs);
         axis.locate_all(&scratch.sun, &mut scratch.nodes, &mut scratch.low, &mut scratch.high);
@@ -248,6 +249,7 @@ pub fn single(
 ) {
     let count = pairs.len();
     scratch.resize(count);
+    let least = NEGLIGIBLE * groups.iter().map(|g| brightest(ray, g)).fold(0.0, f32::max);
     for (k, sample) in ray.samples.iter().enumerate() {
         scratch.turn_sun(sample, pairs);
         let level = sample.level as usize;
@@ -255,26 +257,30 @@ pub fn single(
             if share <= 0.0 {
                 continue;
             }
+            let weight = sample.weight * share;
+            let counts = |g: &SingleGroup| largest(weight * g.shares[level]) > least;
+            if !groups.iter().any(|g| counts(g)) {
+                continue;
+            }
             sunlight.locate(level, &scratch.sun, &mut scratch.nodes, &mut scratch.low, &mut scratch.high);
             let table = sunlight.level(level);
-            let weight = sample.weight * share;
-            let factors = groups.iter().map(|g| weight * g.shares[level]);
-            match groups {
-                [] => {}
-                [a] => add_light(table, [weight * a.shares[level]], scratch, [&mut once[..count]]),
-                [a, b] => {
-                    let (first, second) = once.split_at_mut(count);
-                    let factors = [weight * a.shares[level], weight * b.shares[level]];
-                    add_light(table, factors, scratch, [first, &mut second[..count]]);
-                }
-                _ => {
-                    for (factor, once) in factors.clone().zip(once.chunks_exact_mut(count)) {
-                        add_light(table, [factor], scratch, [once]);
-                    }
+            if let [a, b] = groups
+                && counts(a)
+                && counts(b)
+            {
+                let (first, second) = once.split_at_mut(count);
+                let factors = [weight * a.shares[level], weight * b.shares[level]];
+                add_light(table, factors, scratch, [first, &mut second[..count]]);
+            } else {
+                for (group, once) in
+                    groups.iter().zip(once.chunks_exact_mut(count)).filter(|(g, _)| counts(g))
+                {
+                    add_light(table, [weight * group.shares[level]], scratch, [once]);
                 }
             }
-            for ((g, group), factor) in groups.iter().enumerate().zip(factors) {
+            for (g, group) in groups.iter().enumerate().filter(|(_, g)| counts(g)) {
                 if let Some(depths) = &group.deeper {
+                    let factor = weight * group.shares[level];
                     let out = &mut deeper[g * count..][..count];
                     let depths = sunlight.level_of(depths, level);
                     add_deeper(table, depths, factor, factor * behind[g][k], scratch, out);
@@ -282,6 +288,21 @@ pub fn single(
             }
         }
     }
+}
+
+/// What a sample may add, as a share of the ray's largest, and still be left out: haze high up.
+pub const NEGLIGIBLE: f32 = 1e-7;
+
+/// The largest lane.
+#[inline(always)]
+pub fn largest(v: Lanes) -> f32 {
+    v.0.iter().fold(0.0, |a, &b| if b > a { b } else { a })
+}
+
+/// The largest weight that a group has at any sample of a ray.
+#[inline(always)]
+fn brightest(ray: &Ray, group: &SingleGroup) -> f32 {
+    ray.samples.iter().map(|s| largest(s.weight * group.shares[s.level as usize])).fold(0.0, f32::max)
 }
 
 #[inline(always)]
