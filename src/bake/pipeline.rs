@@ -43,7 +43,7 @@ pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -
         wants(Layout::Compact).then(|| Solution::new(&full, &Resolution::TABLES, settings.orders));
     stage("solve paper's medium");
     let paper_light = (wants(Layout::Elek2010) || full_light.is_none())
-        .then(|| Solution::new(&paper, &Resolution::TABLES, settings.orders));
+        .then(|| Solution::new(&paper, &Resolution::PAPER, settings.orders));
 
     stage("colours");
     let (medium, light) = match (&full_light, &paper_light) {

@@ -51,6 +51,18 @@ impl Resolution {
         sunlight_nodes: 192,
         degree: 8,
     };
+    /// For tables of the paper's medium, whose phase functions end at degree 2 and whose layout interpolates
+    /// more coarsely than this solves.
+    pub const PAPER: Resolution = Resolution {
+        levels: 24,
+        cuts: 3,
+        zeniths: 12,
+        first_azimuths: 6,
+        azimuths: 4,
+        sun_nodes: 40,
+        sunlight_nodes: 160,
+        degree: 2,
+    };
     /// For answers that tables are measured against.
     pub const EXACT: Resolution = Resolution {
         levels: 44,
