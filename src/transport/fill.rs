@@ -26,7 +26,8 @@ pub struct Painter<'a> {
 }
 
 struct Group {
-    single: SingleGroup,
+    /// For a forward peak: T τ towards the sun.
+    deeper: Option<Vec<Lanes>>,
     basis: Basis,
     field: Field,
     /// First constituent of the group, for its phase function and forward peak.
@@ -122,7 +123,7 @@ impl<'a> Painter<'a> {
                 if wanted != Wanted::Single {
                     self.multiple(&path, mu as f32, pairs, out);
                 }
-                let peaks_are_wanted = self.groups.iter().any(|g| g.single.deeper.is_some());
+                let peaks_are_wanted = self.groups.iter().any(|g| g.deeper.is_some());
                 if wanted != Wanted::Multiple || peaks_are_wanted {
                     self.single(&path, &ray, mu as f32, pairs, out);
                 }
@@ -134,7 +135,7 @@ impl<'a> Painter<'a> {
     fn multiple(&self, path: &Path, mu: f32, pairs: &Pairs, out: &mut RayLight) {
         let levels = &self.solution.geometry.levels;
         for (group, out_group) in self.groups.iter().zip(out.multiple.chunks_exact_mut(pairs.len())) {
-            let ray = Ray::weighted(path, levels, &self.batch.optics.extinction, &group.single.shares);
+            let ray = Ray::weighted(path, levels, &self.batch.optics.extinction, &group.scattering);
             let kernel = kernel_for(group.basis.modes);
             kernel(&ray, mu, &group.field, &self.axis, &group.basis, pairs, &mut out.scratch, out_group);
         }
@@ -144,17 +145,19 @@ impl<'a> Painter<'a> {
     fn single(&self, path: &Path, ray: &Ray, mu: f32, pairs: &Pairs, out: &mut RayLight) {
         let optics = &self.batch.optics;
         let count = pairs.len();
-        let groups: Vec<&SingleGroup> = self.groups.iter().map(|g| &g.single).collect();
-        let peaked = |g: &Group| g.single.deeper.is_some();
-        let behind: Vec<Vec<Lanes>> = self
+        let peaked = |g: &Group| g.deeper.is_some();
+        let groups: Vec<SingleGroup> = self
             .groups
             .iter()
-            .map(|g| if peaked(g) { path.depths(&g.scattering) } else { Vec::new() })
+            .map(|g| SingleGroup {
+                weights: path.scattering_weights(&optics.extinction, &g.scattering),
+                deeper: g.deeper.as_ref().map(|d| (d.as_slice(), path.depths(&g.scattering))),
+            })
             .collect();
         out.deeper.clear();
         out.deeper.resize(if self.groups.iter().any(peaked) { out.single.len() } else { 0 }, Lanes::ZERO);
         let RayLight { single, deeper, scratch, .. } = out;
-        kernels::single(ray, &self.batch.sunlight, &groups, &behind, pairs, scratch, single, deeper);
+        kernels::single(ray, &self.batch.sunlight, &groups, pairs, scratch, single, deeper);
         for (g, group) in self.groups.iter().enumerate().filter(|(_, group)| peaked(group)) {
             let range = g * count..(g + 1) * count;
             let (once, multiple) = (&mut out.single[range.clone()], &mut out.multiple[range.clone()]);
@@ -210,15 +213,13 @@ fn group(solution: &Solution, batch: &Batch, members: &[usize]) -> Group {
     let deeper = optics.peaks[members[0]]
         .is_some()
         .then(|| batch.sunlight.times_depth(&solution.columns, &scattering));
-    let single =
-        SingleGroup { shares: optics.group_shares(&geometry.shells, &geometry.levels, members), deeper };
     // The shares are in the weights of the rays; those of the group's first constituent stand for its phase.
     let shares: Vec<Vec<Lanes>> =
         (0..optics.scattering.len()).map(|_| vec![Lanes::splat(1.0); geometry.levels.coarse.len()]).collect();
     let refinement = Refinement::new(geometry.axis.len(), REFINEMENT, true);
     let all = batch.state.field(&solution.basis, optics, &shares, &members[..1], &refinement);
     let (basis, field) = needed_terms(&solution.basis, optics, members, all);
-    Group { single, basis, field, first: members[0], scattering }
+    Group { deeper, basis, field, first: members[0], scattering }
 }
 
 /// Keeps the degrees that the group's phase functions have: an isotropic group needs but one term.

@@ -224,24 +224,23 @@ pub fn azimuth_factor(m: usize, x: f32, s2: f32, sine2: f32) -> f32 {
     }
 }
 
-/// A group of constituents whose single scattering is integrated as one.
-pub struct SingleGroup {
-    /// Scattering as a share of extinction, per fine level.
-    pub shares: Vec<Lanes>,
-    /// For groups with a forward peak: T τ towards the sun, see [`Sunlight::times_depth`].
-    pub deeper: Option<Vec<Lanes>>,
+/// A group of constituents whose single scattering is integrated as one, along one ray.
+pub struct SingleGroup<'a> {
+    /// What sunlight at each sample adds to the radiance at the start, see [`super::rays::Path`].
+    pub weights: Vec<Lanes>,
+    /// For groups with a forward peak: T τ towards the sun, see [`Sunlight::times_depth`], and the scattering
+    /// depth of the group from the start to each sample.
+    pub deeper: Option<(&'a [Lanes], Vec<Lanes>)>,
 }
 
 /// Adds to `once` (`[group][pair]`) the light of each group scattered once that arrives along the ray, without
 /// its phase function; and to `deeper`, for groups with a forward peak, the same light weighted by the
-/// scattering depths that it crosses to the eye and to the sun. `behind[group]`: scattering depth of the group
-/// from the start to each sample (not read for groups without a peak).
+/// scattering depths that it crosses to the eye and to the sun.
 #[inline(always)]
 pub fn single(
     ray: &Ray,
     sunlight: &Sunlight,
-    groups: &[&SingleGroup],
-    behind: &[Vec<Lanes>],
+    groups: &[SingleGroup],
     pairs: &Pairs,
     scratch: &mut Scratch,
     once: &mut [Lanes],
@@ -249,17 +248,17 @@ pub fn single(
 ) {
     let count = pairs.len();
     scratch.resize(count);
-    let least = NEGLIGIBLE * groups.iter().map(|g| brightest(ray, g)).fold(0.0, f32::max);
+    let brightest = |g: &SingleGroup| g.weights.iter().map(|w| largest(*w)).fold(0.0, f32::max);
+    let least = NEGLIGIBLE * groups.iter().map(brightest).fold(0.0, f32::max);
     for (k, sample) in ray.samples.iter().enumerate() {
+        let counts = |g: &SingleGroup| largest(g.weights[k]) > least;
+        if !groups.iter().any(counts) {
+            continue;
+        }
         scratch.turn_sun(sample, pairs);
         let level = sample.level as usize;
         for (level, share) in [(level, 1.0 - sample.place), (level + 1, sample.place)] {
             if share <= 0.0 {
-                continue;
-            }
-            let weight = sample.weight * share;
-            let counts = |g: &SingleGroup| largest(weight * g.shares[level]) > least;
-            if !groups.iter().any(|g| counts(g)) {
                 continue;
             }
             sunlight.locate(level, &scratch.sun, &mut scratch.nodes, &mut scratch.low, &mut scratch.high);
@@ -269,21 +268,25 @@ pub fn single(
                 && counts(b)
             {
                 let (first, second) = once.split_at_mut(count);
-                let factors = [weight * a.shares[level], weight * b.shares[level]];
-                add_light(table, factors, scratch, [first, &mut second[..count]]);
+                add_light(
+                    table,
+                    [a.weights[k] * share, b.weights[k] * share],
+                    scratch,
+                    [first, &mut second[..count]],
+                );
             } else {
                 for (group, once) in
                     groups.iter().zip(once.chunks_exact_mut(count)).filter(|(g, _)| counts(g))
                 {
-                    add_light(table, [weight * group.shares[level]], scratch, [once]);
+                    add_light(table, [group.weights[k] * share], scratch, [once]);
                 }
             }
             for (g, group) in groups.iter().enumerate().filter(|(_, g)| counts(g)) {
-                if let Some(depths) = &group.deeper {
-                    let factor = weight * group.shares[level];
-                    let out = &mut deeper[g * count..][..count];
+                if let Some((depths, behind)) = &group.deeper {
+                    let factor = group.weights[k] * share;
                     let depths = sunlight.level_of(depths, level);
-                    add_deeper(table, depths, factor, factor * behind[g][k], scratch, out);
+                    let out = &mut deeper[g * count..][..count];
+                    add_deeper(table, depths, factor, factor * behind[k], scratch, out);
                 }
             }
         }
@@ -297,12 +300,6 @@ pub const NEGLIGIBLE: f32 = 1e-7;
 #[inline(always)]
 pub fn largest(v: Lanes) -> f32 {
     v.0.iter().fold(0.0, |a, &b| if b > a { b } else { a })
-}
-
-/// The largest weight that a group has at any sample of a ray.
-#[inline(always)]
-fn brightest(ray: &Ray, group: &SingleGroup) -> f32 {
-    ray.samples.iter().map(|s| largest(s.weight * group.shares[s.level as usize])).fold(0.0, f32::max)
 }
 
 #[inline(always)]

@@ -177,23 +177,19 @@ impl<'a> Operator<'a> {
     pub fn first_order(&self, azimuths: usize) -> State {
         let geometry = self.geometry;
         let pairs = Pairs::new(&geometry.axis.mu_s, &midpoint_azimuths(azimuths));
-        let groups: Vec<SingleGroup> = self
-            .scatterers
-            .iter()
-            .map(|&c| SingleGroup {
-                shares: self.optics.group_shares(&geometry.shells, &geometry.levels, &[c]),
-                deeper: None,
-            })
-            .collect();
+        let scattering: Vec<Vec<Lanes>> =
+            self.scatterers.iter().map(|&c| self.optics.group_scattering(&[c])).collect();
         self.gather(
             &pairs,
             #[inline(always)]
             |level, j, scratch, out| {
                 let (d, path) = &geometry.gathers[level].directions[j];
                 let ray = Ray::new(path, &geometry.levels, &self.optics.extinction, false);
+                let weights = |s: &Vec<Lanes>| path.scattering_weights(&self.optics.extinction, s);
+                let groups: Vec<SingleGroup> =
+                    scattering.iter().map(|s| SingleGroup { weights: weights(s), deeper: None }).collect();
                 let mut once = vec![Lanes::ZERO; groups.len() * pairs.len()];
-                let groups: Vec<&SingleGroup> = groups.iter().collect();
-                kernels::single(&ray, self.sunlight, &groups, &[], &pairs, scratch, &mut once, &mut []);
+                kernels::single(&ray, self.sunlight, &groups, &pairs, scratch, &mut once, &mut []);
                 self.add_phases(d.mu as f32, &pairs, &once, out);
                 if let Some(hit) = &ray.hit {
                     let factor = hit.transmittance * self.optics.albedo * FRAC_1_PI as f32;

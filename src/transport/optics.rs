@@ -2,7 +2,6 @@
 
 use super::column::Shells;
 use super::forward::ForwardPeak;
-use super::levels::Levels;
 use crate::lanes::{Lanes, WIDTH};
 use crate::medium::{Medium, PhaseFunction};
 use std::f64::consts::PI;
@@ -78,17 +77,6 @@ impl Optics {
         (0..self.scattering.len())
             .map(|c| if group.contains(&c) { self.scattering[c] } else { Lanes::ZERO })
             .collect()
-    }
-
-    /// Adds the shares of several constituents.
-    pub fn group_shares(&self, shells: &Shells, levels: &Levels, group: &[usize]) -> Vec<Lanes> {
-        let mut sum = vec![Lanes::ZERO; levels.fine.len()];
-        for &c in group {
-            for (s, share) in sum.iter_mut().zip(self.shares(shells, &levels.fine, c)) {
-                *s += share;
-            }
-        }
-        sum
     }
 }
 

@@ -143,6 +143,36 @@ impl Path {
         out
     }
 
+    /// Optical depth of segment `k`, and of it the share that is scattered by given coefficients (0 in a vacuum).
+    #[inline(always)]
+    fn depth_and_share(&self, k: usize, extinction: &[Lanes], scattering: &[Lanes]) -> (Lanes, Lanes) {
+        let (mut depth, mut scattered) = (Lanes::ZERO, Lanes::ZERO);
+        for ((column, e), s) in self.segment(k).iter().zip(extinction).zip(scattering) {
+            depth += *e * *column as f32;
+            scattered += *s * *column as f32;
+        }
+        for w in 0..crate::lanes::WIDTH {
+            scattered[w] = if depth[w] > 0.0 { scattered[w] / depth[w] } else { 0.0 };
+        }
+        (depth, scattered)
+    }
+
+    /// What a source of 1 at each stop, in a group's scattering coefficients, adds to the radiance at the start:
+    /// the weights of single scattering.
+    #[inline(always)]
+    pub fn scattering_weights(&self, extinction: &[Lanes], scattering: &[Lanes]) -> Vec<Lanes> {
+        let mut weights = vec![Lanes::ZERO; self.stops.len()];
+        let mut transmittance = Lanes::splat(1.0);
+        for k in 0..self.stops.len() - 1 {
+            let (depth, share) = self.depth_and_share(k, extinction, scattering);
+            let (near, far, through) = segment_weights(depth);
+            weights[k] += transmittance * near * share;
+            weights[k + 1] = transmittance * far * share;
+            transmittance = transmittance * through;
+        }
+        weights
+    }
+
     /// Where stop `k` lies between two others: by radius, along the ray where that is the same.
     fn place_between(&self, k: usize, from: usize, to: usize) -> f32 {
         let (a, b, x) = (&self.stops[from], &self.stops[to], &self.stops[k]);
@@ -225,20 +255,12 @@ impl Ray {
 }
 
 impl Ray {
-    /// Samples at the coarse stops only, for a source that is `share` (per fine level) times a function linear
-    /// in radius between them: the share of one constituent in the extinction can change fast, where another
-    /// one begins, while the light that it scatters does not.
+    /// Samples at the coarse stops only, for light that constituents of coefficients `scattering` (1/m, where
+    /// the density is 1) scatter out of a field that is linear in radius between them. What they scatter
+    /// between two fine stops is exact, however fast their share in the extinction changes there.
     #[inline(always)]
-    pub fn weighted(path: &Path, levels: &Levels, extinction: &[Lanes], share: &[Lanes]) -> Self {
+    pub fn weighted(path: &Path, levels: &Levels, extinction: &[Lanes], scattering: &[Lanes]) -> Self {
         let last = path.stops.len() - 1;
-        let at_stop = |k: usize| {
-            let (level, place) = path.stops[k].fine;
-            if place == 0.0 {
-                share[level]
-            } else {
-                share[level] * (1.0 - place as f32) + share[level + 1] * place as f32
-            }
-        };
         let mut samples = vec![Sample::at(path, levels, &path.stops[0], true)];
         let (mut transmittance, mut total) = (Lanes::splat(1.0), Lanes::ZERO);
         let mut from = 0;
@@ -247,21 +269,15 @@ impl Ray {
                 .find(|&k| path.stops[k].coarse || k == last)
                 .expect("the last stop ends it");
             let (mut near_sum, mut far_sum) = (Lanes::ZERO, Lanes::ZERO);
-            let mut share_here = at_stop(from);
             for k in from..to {
-                let mut depth = Lanes::ZERO;
-                for (column, e) in path.segment(k).iter().zip(extinction) {
-                    depth += *e * *column as f32;
-                }
+                let (depth, share) = path.depth_and_share(k, extinction, scattering);
                 let (near, far, through) = segment_weights(depth);
-                let share_next = at_stop(k + 1);
                 let (a, b) = (path.place_between(k, from, to), path.place_between(k + 1, from, to));
-                let (near, far) = (transmittance * near * share_here, transmittance * far * share_next);
+                let (near, far) = (transmittance * near * share, transmittance * far * share);
                 near_sum += near * (1.0 - a) + far * (1.0 - b);
                 far_sum += near * a + far * b;
                 transmittance = transmittance * through;
                 total += depth;
-                share_here = share_next;
             }
             samples.last_mut().expect("not empty").weight += near_sum;
             let mut sample = Sample::at(path, levels, &path.stops[to], true);
