@@ -59,8 +59,7 @@ fn to_top(medium: &Medium, r: f64, mu: f64) -> f64 {
 /// the way up, both optical depths by Simpson's rule in the test.
 #[test]
 fn absorber_dims_the_ground_twice_and_sends_nothing_on() {
-    let gas =
-        constituent(Role::Gas, PhaseFunction::Isotropic, exponential(11e3), &[0.0; 2], &[4e-5, 1e-5]);
+    let gas = constituent(Role::Gas, PhaseFunction::Isotropic, exponential(11e3), &[0.0; 2], &[4e-5, 1e-5]);
     let medium = planet(1_500e3, 90e3, 0.6, vec![gas]);
     let solution = Solution::new(&medium, &COARSE, CONVERGED);
     for (altitude, sun) in [(90e3, 60.0), (20e3, 15.0), (5e3, 89.0)] {
@@ -84,17 +83,16 @@ fn absorber_dims_the_ground_twice_and_sends_nothing_on() {
 fn vanishing_shell_shines_by_the_length_of_its_rays() {
     let phase = PhaseFunction::HenyeyGreenstein { g: 0.5 };
     let layer = DensityProfile::Layer { bottom: 0.0, top: 60e3 };
-    let medium = planet(
-        1_000e3,
-        60e3,
-        0.0,
-        vec![constituent(Role::Aerosol, phase.clone(), layer, &[1e-10], &[0.0])],
-    );
+    let medium =
+        planet(1_000e3, 60e3, 0.0, vec![constituent(Role::Aerosol, phase.clone(), layer, &[1e-10], &[0.0])]);
     for orders in [Orders::First(1), CONVERGED] {
         let solution = Solution::new(&medium, &COARSE, orders);
-        for (altitude, mu, sun, azimuth) in
-            [(0.0, 1.0, 30.0, 0.0), (0.0, 0.2, 70.0, 20.0), (30e3, 0.0, 60.0, 170.0), (30e3, -0.1, 80.0, 60.0)]
-        {
+        for (altitude, mu, sun, azimuth) in [
+            (0.0, 1.0, 30.0, 0.0),
+            (0.0, 0.2, 70.0, 20.0),
+            (30e3, 0.0, 60.0, 170.0),
+            (30e3, -0.1, 80.0, 60.0),
+        ] {
             let p = point(altitude, mu, sun, azimuth);
             let found = seen(&solution, &medium, altitude, mu, sun, azimuth).scattering[0];
             let expected = 1e-10 * phase.value(p.nu()) * to_top(&medium, 1_000e3 + altitude, mu);
@@ -115,9 +113,8 @@ fn vanishing_shell_shines_by_the_length_of_its_rays() {
 fn transmittances_multiply_both_ways() {
     let medium = small_world();
     let solution = Solution::new(&medium, &COARSE, Orders::First(1));
-    let through = |r: f64, mu: f64| {
-        seen(&solution, &medium, r - medium.ground_radius, mu, 20.0, 0.0).transmittance
-    };
+    let through =
+        |r: f64, mu: f64| seen(&solution, &medium, r - medium.ground_radius, mu, 20.0, 0.0).transmittance;
     // A ray that passes the centre at 380 km, inside the ground: its points are 350 and 250 km from the turn.
     let b2: f64 = 380e3 * 380e3;
     let radius = |along: f64| (b2 + along * along).sqrt();
@@ -139,13 +136,8 @@ fn transmittances_multiply_both_ways() {
 #[test]
 fn sunlight_is_dimmed_as_chapman_says() {
     let scale = 8e3;
-    let gas = constituent(
-        Role::Gas,
-        PhaseFunction::Isotropic,
-        exponential(scale),
-        &[1e-6, 1e-5],
-        &[1e-6, 2e-6],
-    );
+    let gas =
+        constituent(Role::Gas, PhaseFunction::Isotropic, exponential(scale), &[1e-6, 1e-5], &[1e-6, 2e-6]);
     let medium = planet(3_000e3, 150e3, 0.0, vec![gas]);
     let solution = Solution::new(&medium, &COARSE, Orders::First(1));
     for (altitude, mu_s) in

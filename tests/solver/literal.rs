@@ -81,8 +81,7 @@ fn literal_algorithm_converges_to_the_solver() {
 #[test]
 fn orders_sum_to_the_converged_answer() {
     let medium = small_world();
-    let [many, all] =
-        [Orders::First(12), CONVERGED].map(|o| Solution::new(&medium, &Resolution::TABLES, o));
+    let [many, all] = [Orders::First(12), CONVERGED].map(|o| Solution::new(&medium, &Resolution::TABLES, o));
     for (altitude, mu, mu_s, cos_azimuth) in PLACES {
         let sines = ((1.0 - mu * mu) * (1.0_f64 - mu_s * mu_s)).sqrt();
         let (r, nu) = (medium.ground_radius + altitude, mu * mu_s + sines * cos_azimuth);
