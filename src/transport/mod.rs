@@ -13,6 +13,8 @@ mod column;
 pub mod exact;
 pub mod fill;
 mod forward;
+#[cfg(test)]
+mod furnace;
 mod kernels;
 mod levels;
 mod moments;

@@ -103,7 +103,7 @@ impl<'a> Operator<'a> {
 
     /// Gathers the moments of a radiance, given along each direction of each level for all pairs.
     /// `radiance(level, direction number, scratch, out)` adds to `out`, one value a pair.
-    fn gather(
+    pub(super) fn gather(
         &self,
         pairs: &Pairs,
         radiance: impl Fn(usize, usize, &mut Scratch, &mut [Lanes]) + Sync,
