@@ -12,7 +12,7 @@ use crate::export::{Atlas, exr};
 use crate::medium::{Medium, Role};
 use crate::preset::Planet;
 use crate::sky::{AerosolPhase, Sky};
-use crate::transport::solve::{Orders, Resolution, Solution};
+use crate::transport::solve::{Orders, Resolution, Solution, worst};
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -169,9 +169,9 @@ pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -
 }
 
 fn solver_warnings(name: &str, solution: &Solution, settings: &Settings) -> Vec<String> {
-    let worst = solution.report.residual.iter().copied().fold(0.0, f64::max);
+    let worst = worst(&solution.report.residual);
     match settings.orders {
-        Orders::Converged { tolerance } if worst.is_nan() || worst > 10.0 * tolerance => vec![format!(
+        Orders::Converged { tolerance } if worst > 10.0 * tolerance => vec![format!(
             "{name} medium: not converged after {} applications, residual {worst:.2e}",
             solution.report.applications
         )],

@@ -7,7 +7,7 @@ use crate::quality::{Distribution, REGIONS, colour_error, digits, relative_error
 use crate::sky::{AerosolPhase, Component, Sky};
 use crate::spectrum::multiply;
 use crate::transport::balance::balance;
-use crate::transport::solve::{Orders, Solution};
+use crate::transport::solve::{Orders, Solution, worst};
 use crate::transport::view::View;
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
@@ -88,7 +88,7 @@ fn rgb(palette: &Palette, light: &[f64]) -> [f64; 3] {
 
 /// What the solver says of one medium: orders, residual, energy balance.
 pub fn solver(medium: &Medium, solution: &Solution) -> Value {
-    let residual = solution.report.residual.iter().copied().fold(0.0, f64::max);
+    let residual = worst(&solution.report.residual);
     let mut out = Map::new();
     match solution.orders {
         Orders::Converged { .. } => {

@@ -38,7 +38,8 @@ impl Solution {
         for batch in &self.batches {
             let (s, g, t) = self.march(batch, view, last);
             let n = batch.optics.count;
-            out.scattering.extend(s.0[..n].iter().map(|&v| f64::from(v)));
+            // A field cut off at a finite degree can undershoot where there is next to no light.
+            out.scattering.extend(s.0[..n].iter().map(|&v| f64::from(v).max(0.0)));
             out.ground.extend(g.0[..n].iter().map(|&v| f64::from(v)));
             out.transmittance.extend(t.0[..n].iter().map(|&v| f64::from(v)));
         }
