@@ -66,8 +66,8 @@ impl Resolution {
     /// For answers that tables are measured against.
     pub const EXACT: Resolution = Resolution {
         levels: 44,
-        cuts: 3,
-        zeniths: 20,
+        cuts: 6,
+        zeniths: 14,
         first_azimuths: 16,
         azimuths: 8,
         sun_nodes: 64,
