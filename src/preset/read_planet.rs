@@ -5,6 +5,7 @@ use super::raw::Raw;
 use super::read_constituent::constituent;
 use super::read_spectrum::{IRRADIANCE, SHARE, held, spectrum, table};
 use crate::error::Result;
+use crate::medium::check_shell;
 use crate::spectrum::{OBSERVER_RANGE, Spectrum, fine_grid, planck_law};
 use std::f64::consts::PI;
 
@@ -24,6 +25,7 @@ pub fn planet(raw: &Raw) -> Result<Planet> {
     if ground_radius + height <= ground_radius {
         return Err(top.refuse("the shell is too thin for its radius to be told from the ground's"));
     }
+    check_shell(ground_radius, ground_radius + height).map_err(|reason| top.refuse(reason))?;
     let star_raw = raw.need("star")?;
     let star = star(&star_raw)?;
     let lit = fine_grid().iter().map(|&w| star.irradiance.at(w)).sum::<f64>();
