@@ -6,7 +6,7 @@ use super::read_constituent::constituent;
 use super::read_spectrum::{IRRADIANCE, SHARE, held, spectrum, table};
 use crate::error::Result;
 use crate::medium::check_shell;
-use crate::spectrum::{OBSERVER_RANGE, Spectrum, fine_grid, planck_law};
+use crate::spectrum::{OBSERVER_RANGE, Spectrum, fine_grid, grid, planck_law};
 use std::f64::consts::PI;
 
 /// Astronomical unit, m (IAU 2012 Resolution B2, exact).
@@ -44,7 +44,7 @@ pub fn planet(raw: &Raw) -> Result<Planet> {
         warnings.extend(about);
         constituents.push(substance);
     }
-    Ok(Planet {
+    let planet = Planet {
         name: name(raw)?,
         description: raw.need("description")?.text()?.to_string(),
         ground_radius,
@@ -53,7 +53,13 @@ pub fn planet(raw: &Raw) -> Result<Planet> {
         star,
         constituents,
         warnings,
-    })
+    };
+    // What formulas make of numbers that are good each by itself.
+    let medium = planet.medium(&grid(9));
+    if let Err(reason) = medium.check() {
+        return Err(raw.need("constituents")?.refuse(reason));
+    }
+    Ok(planet)
 }
 
 /// The name becomes a folder's, so only letters that every file system and shell takes are let in.

@@ -192,7 +192,7 @@ fn numbers_of_the_manifest() {
         (
             |m| m["preset"]["resolved"]["constituents"][0]["density_factor"] = 1e300.into(),
             "--exact",
-            "must be 0 or more, and finite",
+            "e299: 1e5 is the most",
         ),
         (
             |m| m["settings"]["orders"]["first"] = 1_000_000_000_000_u64.into(),

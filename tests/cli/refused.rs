@@ -32,7 +32,10 @@ fn presets_and_values() {
     set("ground.radius_km=-3", &["presets/planets/earth.json: ground.radius_km = -3"]);
     set("top.height_km=1e6", &["presets/planets/earth.json: top", "ground radii high"]);
     set("ground.radius_km=1e9", &["presets/planets/earth.json: top", "1e10 m is the most"]);
-    set("constituents.aerosol.density_factor=1e9", &["earth: vertical optical depth at", "1e5 is the most"]);
+    set(
+        "constituents.aerosol.density_factor=1e9",
+        &["earth.json: constituents", "vertical optical depth at", "1e5 is the most"],
+    );
     set("ground.albedo=NaN", &["ground.albedo=NaN", "not a finite number"]);
     set("ground.albedo=1e999", &["ground.albedo=1e999", "not a finite number"]);
     set("ground.albedo", &["path.to.key=value"]);
@@ -89,7 +92,7 @@ fn arguments() {
     let set = "--set constituents.aerosol.density_factor=1e9";
     refused(
         &format!("reference earth --points {points} {set}"),
-        &["earth: vertical optical depth at 440 nm"],
+        &["earth.json: constituents", "vertical optical depth at"],
     );
 }
 
