@@ -12,6 +12,7 @@ use crate::export::{Atlas, exr};
 use crate::medium::{Medium, Role};
 use crate::preset::Planet;
 use crate::sky::{AerosolPhase, Sky};
+use crate::spectrum::RANGE;
 use crate::transport::solve::{Orders, Resolution, Solution, worst};
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
@@ -34,9 +35,11 @@ const BALANCE_WARNING: f64 = 3e-3;
 pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -> Result<Product> {
     stage("media");
     let full = planet.medium(&settings.wavelengths_nm);
+    full.check().map_err(|reason| Error::Argument(format!("{}: {reason}", planet.name)))?;
     let paper = full.similarity();
     let wants = |layout| settings.layouts.contains(&layout);
     let mut warnings = planet.warnings.clone();
+    warnings.extend(outside_vision(&settings.wavelengths_nm));
 
     stage("solve");
     let full_light =
@@ -166,6 +169,19 @@ pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -
     out.extend(files.extra.into_iter().map(|(file, _, bytes)| (file, bytes)));
     out.push(("bake.json".into(), text.into_bytes()));
     Ok(Product { files: out, manifest })
+}
+
+/// A warning where wavelengths lie outside those that colours are made of.
+fn outside_vision(nm: &[f64]) -> Option<String> {
+    let (from, to) = RANGE;
+    let outside = nm.iter().filter(|w| !(from..=to).contains(*w)).count();
+    (outside > 0).then(|| {
+        format!(
+            "{outside} of {} wavelengths lie outside {from} to {to} nm, which is all that colours see; spectra \
+             of the preset are held at their ends where they are not given",
+            nm.len()
+        )
+    })
 }
 
 fn solver_warnings(name: &str, solution: &Solution, settings: &Settings) -> Vec<String> {

@@ -28,11 +28,17 @@ impl IsaChoice {
     }
 }
 
+/// Threads that can be asked for: more than any machine has, fewer than any system gives.
+const MOST_THREADS: usize = 1024;
+
 /// Runs with a number of threads, all of the machine's where none is given.
 pub fn with_threads<R: Send>(threads: Option<usize>, work: impl FnOnce() -> R + Send) -> Result<R> {
     match threads {
         None => Ok(work()),
         Some(0) => Err(Error::Argument("--threads 0: at least one is needed".into())),
+        Some(n) if n > MOST_THREADS => {
+            Err(Error::Argument(format!("--threads {n}: {MOST_THREADS} are the most")))
+        }
         Some(n) => {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
             Ok(pool.map_err(|e| Error::Argument(format!("--threads {n}: {e}")))?.install(work))
@@ -42,7 +48,6 @@ pub fn with_threads<R: Send>(threads: Option<usize>, work: impl FnOnce() -> R + 
 
 /// `auto`, a number of even samples, or a list of nm.
 pub fn wavelengths(text: &str) -> std::result::Result<Vec<f64>, String> {
-    let most = 400;
     if text == "auto" {
         return Ok(crate::spectrum::grid(crate::bake::settings::WAVELENGTHS));
     }
@@ -59,17 +64,32 @@ pub fn wavelengths(text: &str) -> std::result::Result<Vec<f64>, String> {
         .split(',')
         .map(|t| t.trim().parse::<f64>().map_err(|_| format!("`{t}` is not a wavelength in nm")))
         .collect::<std::result::Result<_, _>>()?;
-    if let Some(w) = list.iter().find(|w| !(100.0..=10_000.0).contains(*w)) {
-        return Err(format!("{w} nm is outside 100 to 10000 nm"));
-    }
+    in_range(&list)?;
     if list.windows(2).any(|w| w[0] >= w[1]) {
         return Err("wavelengths must rise".into());
     }
-    if list.len() > most {
-        return Err(format!("more than {most} wavelengths"));
-    }
     Ok(list)
 }
+
+/// Wavelengths of a run at most.
+const MOST_WAVELENGTHS: usize = 400;
+
+/// Whether wavelengths (nm), in any order, are ones that a run may have.
+pub fn in_range(list: &[f64]) -> std::result::Result<(), String> {
+    if list.is_empty() {
+        return Err("at least one wavelength is needed".into());
+    }
+    if let Some(w) = list.iter().find(|w| !(100.0..=10_000.0).contains(*w)) {
+        return Err(format!("{w} nm is outside 100 to 10000 nm"));
+    }
+    if list.len() > MOST_WAVELENGTHS {
+        return Err(format!("more than {MOST_WAVELENGTHS} wavelengths"));
+    }
+    Ok(())
+}
+
+/// Orders of scattering that can be asked for.
+pub const MOST_ORDERS: usize = 10_000;
 
 /// `auto` or a number of orders; `tolerance` is what `auto` converges to.
 pub fn orders(text: &str, tolerance: f64) -> std::result::Result<Orders, String> {
@@ -77,7 +97,7 @@ pub fn orders(text: &str, tolerance: f64) -> std::result::Result<Orders, String>
         return Ok(Orders::Converged { tolerance });
     }
     match text.parse::<usize>() {
-        Ok(n) if (1..=10_000).contains(&n) => Ok(Orders::First(n)),
+        Ok(n) if (1..=MOST_ORDERS).contains(&n) => Ok(Orders::First(n)),
         _ => Err("expected `auto` or a number from 1 to 10000".into()),
     }
 }

@@ -1,5 +1,6 @@
 //! `tyndall reference`: the Monte Carlo path tracer on the command line, radiances as CSV with standard errors.
 
+use super::machine::{in_range, with_threads};
 use crate::error::{Error, Result};
 use crate::medium::Medium;
 use crate::points::{Answer, Point, read_points, write_answers};
@@ -41,8 +42,8 @@ pub struct Args {
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Threads [default: all]; the answer does not depend on them
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
-    threads: Option<u64>,
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
     /// No progress on stderr
     #[arg(long)]
     quiet: bool,
@@ -63,15 +64,9 @@ fn ratio(text: &str) -> std::result::Result<f64, String> {
 /// Traces all points at all wavelengths and writes the answers to stdout.
 pub fn run(args: &Args) -> Result<()> {
     let points = read_points(&args.points)?;
-    if let Some(w) = args.wavelengths.iter().find(|w| !(w.is_finite() && **w > 0.0)) {
-        return Err(Error::Argument(format!("--wavelengths {w}: a wavelength is a positive number of nm")));
-    }
+    in_range(&args.wavelengths).map_err(|reason| Error::Argument(format!("--wavelengths: {reason}")))?;
     let medium = medium(args)?;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(args.threads.unwrap_or(0) as usize)
-        .build()
-        .map_err(|e| Error::Argument(format!("--threads: {e}")))?;
-    let estimates = pool.install(|| trace(args, &medium, &points));
+    let estimates = with_threads(args.threads, || trace(args, &medium, &points))?;
     complain(args, &estimates);
     let mut out = Vec::new();
     write(&mut out, args, &medium, &points, &estimates).map_err(|e| Error::machine("(memory)", e))?;
@@ -79,7 +74,9 @@ pub fn run(args: &Args) -> Result<()> {
 }
 
 fn medium(args: &Args) -> Result<Medium> {
-    Ok(crate::preset::load(&args.preset, &args.set)?.medium(&args.wavelengths))
+    let medium = crate::preset::load(&args.preset, &args.set)?.medium(&args.wavelengths);
+    medium.check().map_err(|reason| Error::Argument(format!("{}: {reason}", args.preset)))?;
+    Ok(medium)
 }
 
 /// Estimates by wavelength, then point.

@@ -1,9 +1,10 @@
 //! `tyndall sample`: what baked tables answer at any view, and the truth beside it.
 
-use super::machine::{IsaChoice, orders, wavelengths, with_threads};
+use super::machine::{IsaChoice, MOST_ORDERS, in_range, orders, wavelengths, with_threads};
 use super::text::print;
 use crate::error::{Error, Result};
 use crate::export::manifest::Manifest;
+use crate::medium::Medium;
 use crate::points::{Answer, Point, read_points, write_answers};
 use crate::preset::Planet;
 use crate::sky::{AerosolPhase, Channels, Component, Sky};
@@ -63,12 +64,20 @@ pub fn run(args: &Args) -> Result<()> {
     let text = |e| Error::machine("the answer", e);
     if args.exact {
         let nm = exact_wavelengths(args, &manifest)?;
-        let light = with_threads(args.threads, || exact(args, &manifest, &planet, &nm, &points))?;
+        let refuse = |reason: String| Error::file(&args.bake, format!("bake.json: {reason}"));
+        let medium = planet.medium(&nm);
+        medium.check().map_err(refuse)?;
+        let baked = baked_orders(&manifest).map_err(refuse)?;
+        let light = with_threads(args.threads, || exact(args, &medium, baked, &points))?;
         spectral(&mut out, args, &planet, &points, &nm, &light).map_err(text)?;
     } else {
         let sky = Sky::open(&args.bake, &manifest, &layout(args, &manifest)?)?;
-        let light: Vec<Vec<f64>> =
-            points.iter().map(|p| sky.radiance(p, args.component, AerosolPhase::Preset)).collect();
+        let ask = |p: &Point| sky.radiance(p, args.component, AerosolPhase::Preset);
+        let light: Vec<Vec<f64>> = with_threads(args.threads, || points.iter().map(ask).collect())?;
+        if light.iter().flatten().any(|v| !v.is_finite()) {
+            let reason = "bake.json: an answer is not a finite number; an encoding or matrix is damaged";
+            return Err(Error::file(&args.bake, reason));
+        }
         match sky.channels() {
             Channels::Wavelengths(nm) => {
                 spectral(&mut out, args, &planet, &points, &nm, &light).map_err(text)?
@@ -104,26 +113,32 @@ fn exact_wavelengths(args: &Args, manifest: &Manifest) -> Result<Vec<f64>> {
         return wavelengths(text)
             .map_err(|reason| Error::Argument(format!("--wavelengths {text}: {reason}")));
     }
-    let four = manifest.constants.get("four_wavelengths_nm").cloned();
-    match layout(args, manifest)?.as_str() {
-        "compact" => Ok(four.unwrap_or_else(|| manifest.wavelengths.nm.clone())),
-        _ => Ok(manifest.wavelengths.nm.clone()),
+    let four = manifest.constants.get("four_wavelengths_nm");
+    let (key, nm) = match (layout(args, manifest)?.as_str(), four) {
+        ("compact", Some(four)) => ("constants.four_wavelengths_nm", four),
+        _ => ("wavelengths.nm", &manifest.wavelengths.nm),
+    };
+    in_range(nm).map_err(|reason| Error::file(&args.bake, format!("bake.json: {key}: {reason}")))?;
+    Ok(nm.clone())
+}
+
+/// The orders that the bake was made of.
+fn baked_orders(manifest: &Manifest) -> std::result::Result<Orders, String> {
+    match manifest.settings["orders"]["first"].as_u64() {
+        Some(n) if (1..=MOST_ORDERS as u64).contains(&n) => Ok(Orders::First(n as usize)),
+        Some(n) => Err(format!("settings.orders.first = {n}: must be from 1 to {MOST_ORDERS}")),
+        None => Ok(Orders::Converged { tolerance: EXACT_TOLERANCE }),
     }
 }
 
 /// Radiance over solar irradiance, `[point][wavelength]`.
-fn exact(args: &Args, manifest: &Manifest, planet: &Planet, nm: &[f64], points: &[Point]) -> Vec<Vec<f64>> {
-    let medium = planet.medium(nm);
-    let baked = match manifest.settings["orders"]["first"].as_u64() {
-        Some(n) => Orders::First(n as usize),
-        None => Orders::Converged { tolerance: EXACT_TOLERANCE },
-    };
-    let solution = Solution::new(&medium, &Resolution::EXACT, args.orders.unwrap_or(baked));
+fn exact(args: &Args, medium: &Medium, baked: Orders, points: &[Point]) -> Vec<Vec<f64>> {
+    let solution = Solution::new(medium, &Resolution::EXACT, args.orders.unwrap_or(baked));
     let all: Vec<usize> = (0..medium.constituents.len()).collect();
     points
         .par_iter()
         .map(|p| match View::enter(p, medium.ground_radius, medium.top_radius) {
-            None => vec![0.0; nm.len()],
+            None => vec![0.0; medium.wavelengths_nm.len()],
             Some(view) => {
                 let r = solution.radiance(&view, &all);
                 let sum = |(s, g): (&f64, &f64)| match args.component {

@@ -1,9 +1,11 @@
 //! What the air is made of: constituents with a density profile, coefficients and a phase function, at the
 //! wavelengths of a run. Shared by the solver, the Monte Carlo reference and the older methods.
 
+mod check;
 mod density;
 mod phase;
 
+pub use check::check_shell;
 pub use density::DensityProfile;
 pub use phase::PhaseFunction;
 

@@ -99,6 +99,22 @@ impl PhaseLaw {
         }
     }
 
+    /// Whether a table is one: a row for each wavelength, a value for each cosine, both rising.
+    pub fn check(&self) -> Result<(), String> {
+        let PhaseLaw::Tabulated { cosines, wavelengths_nm, rows } = self else { return Ok(()) };
+        let rising = |list: &[f64]| list.windows(2).all(|p| p[0] < p[1]);
+        if cosines.len() < 2 || cosines[0] != -1.0 || cosines[cosines.len() - 1] != 1.0 || !rising(cosines) {
+            return Err("cosines must rise from -1 to 1".into());
+        }
+        if rows.is_empty() || rows.len() != wavelengths_nm.len() || !rising(wavelengths_nm) {
+            return Err("wavelengths_nm must rise, with a row for each".into());
+        }
+        match rows.iter().position(|row| row.len() != cosines.len()) {
+            Some(k) => Err(format!("row {k} has {} values for {} cosines", rows[k].len(), cosines.len())),
+            None => Ok(()),
+        }
+    }
+
     /// Tables in the law, with their key, whose end values may have to be held.
     pub fn spectra(&self) -> Vec<&Spectrum> {
         match self {

@@ -2,8 +2,8 @@
 
 use super::{Coefficient, PhaseLaw};
 use crate::error::{Error, Result};
-use crate::medium::{Constituent, DensityProfile, Medium, Role};
-use crate::spectrum::Spectrum;
+use crate::medium::{Constituent, DensityProfile, Medium, Role, check_shell};
+use crate::spectrum::{Spectrum, grid};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -135,9 +135,12 @@ impl Planet {
     pub fn from_resolved(value: &Value) -> Result<Planet> {
         let refuse = |reason: String| Error::Argument(format!("resolved preset: {reason}"));
         let planet: Planet = Planet::deserialize(value).map_err(|e| refuse(e.to_string()))?;
-        if !(planet.ground_radius > 0.0 && planet.top_radius > planet.ground_radius) {
-            return Err(refuse("top_radius_m must exceed ground_radius_m, and that 0".into()));
+        check_shell(planet.ground_radius, planet.top_radius)
+            .map_err(|reason| refuse(format!("ground_radius_m, top_radius_m: {reason}")))?;
+        for c in &planet.constituents {
+            c.phase.check().map_err(|reason| refuse(format!("constituents.{}.phase: {reason}", c.name)))?;
         }
+        planet.medium(&grid(9)).check().map_err(refuse)?;
         Ok(planet)
     }
 

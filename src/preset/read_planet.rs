@@ -5,7 +5,8 @@ use super::raw::Raw;
 use super::read_constituent::constituent;
 use super::read_spectrum::{IRRADIANCE, SHARE, held, spectrum, table};
 use crate::error::Result;
-use crate::spectrum::{OBSERVER_RANGE, Spectrum, fine_grid, planck_law};
+use crate::medium::check_shell;
+use crate::spectrum::{OBSERVER_RANGE, Spectrum, fine_grid, grid, planck_law};
 use std::f64::consts::PI;
 
 /// Astronomical unit, m (IAU 2012 Resolution B2, exact).
@@ -24,6 +25,7 @@ pub fn planet(raw: &Raw) -> Result<Planet> {
     if ground_radius + height <= ground_radius {
         return Err(top.refuse("the shell is too thin for its radius to be told from the ground's"));
     }
+    check_shell(ground_radius, ground_radius + height).map_err(|reason| top.refuse(reason))?;
     let star_raw = raw.need("star")?;
     let star = star(&star_raw)?;
     let lit = fine_grid().iter().map(|&w| star.irradiance.at(w)).sum::<f64>();
@@ -42,7 +44,7 @@ pub fn planet(raw: &Raw) -> Result<Planet> {
         warnings.extend(about);
         constituents.push(substance);
     }
-    Ok(Planet {
+    let planet = Planet {
         name: name(raw)?,
         description: raw.need("description")?.text()?.to_string(),
         ground_radius,
@@ -51,7 +53,13 @@ pub fn planet(raw: &Raw) -> Result<Planet> {
         star,
         constituents,
         warnings,
-    })
+    };
+    // What formulas make of numbers that are good each by itself.
+    let medium = planet.medium(&grid(9));
+    if let Err(reason) = medium.check() {
+        return Err(raw.need("constituents")?.refuse(reason));
+    }
+    Ok(planet)
 }
 
 /// The name becomes a folder's, so only letters that every file system and shell takes are let in.

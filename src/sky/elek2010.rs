@@ -11,7 +11,8 @@ pub struct Elek2010Sky {
     scattering: Volume,
     depth: Plane,
     irradiance: Plane,
-    phase: Plane,
+    /// None where nothing scatters.
+    phase: Option<Plane>,
     aerosol_row: usize,
     ground_albedo: Vec<f64>,
     /// Rows R, G, B from the four wavelengths, over the star's illuminance.
@@ -27,7 +28,7 @@ impl Elek2010Sky {
             scattering: source.volume("scattering")?,
             depth: source.plane("transmittance")?,
             irradiance: source.plane("irradiance")?,
-            phase: source.plane("phase")?,
+            phase: if source.has("phase") { Some(source.plane("phase")?) } else { None },
             aerosol_row: source.number("elek2010_aerosol_phase_row")? as usize,
             ground_albedo: source.constant("ground_albedo_at_four")?,
             rgb: rgb.iter().map(|row| row.iter().map(|v| v / illuminance).collect()).collect(),
@@ -61,7 +62,8 @@ impl Elek2010Sky {
         match phase {
             AerosolPhase::Isotropic => sunlight.map(|t| t / (4.0 * PI)),
             AerosolPhase::Preset => {
-                let p = self.phase.at((0.5 * (1.0 - nu)).max(0.0).sqrt(), self.aerosol_row);
+                let Some(phase) = &self.phase else { return [0.0; 4] };
+                let p = phase.at((0.5 * (1.0 - nu)).max(0.0).sqrt(), self.aerosol_row);
                 std::array::from_fn(|k| sunlight[k] * p[k])
             }
         }

@@ -2,6 +2,7 @@
 //!
 //! Knows manifests and decoded pictures, nothing of presets or of the solver.
 
+mod check;
 mod compact;
 mod elek2010;
 mod volume;
@@ -70,6 +71,7 @@ impl Sky {
         pictures: &BTreeMap<String, Atlas>,
     ) -> Result<Sky> {
         let source = Source { bake, manifest, layout, pictures };
+        source.check()?;
         match layout {
             "compact" => Ok(Sky::Compact(Compact::new(&source)?)),
             "elek2010" => Ok(Sky::Elek2010(Elek2010Sky::new(&source)?)),

@@ -13,6 +13,7 @@ struct Texels {
 impl Texels {
     fn new(table: &Table, atlas: &Atlas) -> Result<Self, String> {
         let expected: usize = table.shape.iter().product();
+        // The shape was held against the file when the sky was opened.
         let mut values = vec![[0.0; 4]; expected];
         let mut encodings = Vec::new();
         if table.channels.len() > 4 {

@@ -22,8 +22,13 @@ impl Pairs {
         Pairs { sun_count: mu_s.len(), azimuth_count: cos_azimuth.len(), mu_s: cosines, across }
     }
 
+    /// Number of pairs.
     pub fn len(&self) -> usize {
         self.mu_s.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.mu_s.is_empty()
     }
 }
 
@@ -70,6 +75,10 @@ impl SunAxis {
     /// Number of nodes.
     pub fn len(&self) -> usize {
         self.mu_s.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.mu_s.is_empty()
     }
 
     /// Node below and place between it and the next; below the lowest node the second value is negative and

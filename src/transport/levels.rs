@@ -19,6 +19,8 @@ pub struct Levels {
 const STEPS: usize = 4096;
 /// A fine shell has at most this optical depth, so that what varies inside it is nearly linear.
 const SHELL_DEPTH: f64 = 0.25;
+/// Fine shells at most, unless the kinks of profiles alone make more.
+const MOST_SHELLS: usize = 600;
 
 impl Levels {
     /// `coarse` levels, each interval cut into `cuts` shells; further shells end at every kink of a profile.
@@ -105,14 +107,47 @@ fn insert_kinks(fine: &mut Vec<f64>, medium: &Medium) {
 }
 
 fn cut_thick_shells(fine: &mut Vec<f64>, medium: &Medium) {
-    let mut out = vec![fine[0]];
-    for pair in fine.windows(2) {
+    let depth = |pair: &[f64]| {
         let middle = 0.5 * (pair[0] + pair[1]) - medium.ground_radius;
-        let depth = largest_extinction(medium, middle) * (pair[1] - pair[0]);
-        let parts = (depth / SHELL_DEPTH).ceil().clamp(1.0, 64.0) as usize;
+        largest_extinction(medium, middle) * (pair[1] - pair[0])
+    };
+    let depths: Vec<f64> = fine.windows(2).map(depth).collect();
+    let mut out = vec![fine[0]];
+    for (pair, parts) in fine.windows(2).zip(parts(&depths)) {
         out.extend((1..=parts).map(|k| pair[0] + (pair[1] - pair[0]) * k as f64 / parts as f64));
         // The last one is the shell's own end, to the bit.
         *out.last_mut().expect("not empty") = pair[1];
     }
     *fine = out;
+}
+
+/// Into how many parts each shell is cut, of what is at most [`SHELL_DEPTH`] deep, or more where the parts would
+/// be more than [`MOST_SHELLS`]: work grows with their square.
+fn parts(depths: &[f64]) -> Vec<usize> {
+    let cut = |most: f64| -> Vec<usize> {
+        depths.iter().map(|d| (d / most).ceil().clamp(1.0, 64.0) as usize).collect()
+    };
+    let mut most = SHELL_DEPTH;
+    let mut parts = cut(most);
+    while parts.iter().sum::<usize>() > MOST_SHELLS.max(depths.len()) {
+        most *= 1.25;
+        parts = cut(most);
+    }
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Thin shells are left whole, thick ones cut to the depth wanted; of a shell a million deep there are no
+    /// more parts than can be worked through, and the sum stays bounded however many there are.
+    #[test]
+    fn thick_air_is_cut_into_a_bounded_number_of_shells() {
+        assert_eq!(parts(&[0.1, 1.0, 0.25]), [1, 4, 1]);
+        assert_eq!(parts(&[1e6, 0.0]), [64, 1]);
+        let many = parts(&[1e4; 90]);
+        assert!((90..=MOST_SHELLS).contains(&many.iter().sum()));
+        assert_eq!(parts(&vec![1e9; 2 * MOST_SHELLS]), vec![1; 2 * MOST_SHELLS]);
+    }
 }

@@ -127,3 +127,95 @@ fn manifests() {
         }
     }
 }
+
+/// A damage to a manifest, the options of `sample` that meet it, and what must be said of it.
+type Case = (fn(&mut Value), &'static str, &'static str);
+
+/// Numbers in `bake.json` that are indices, sizes, divisors or physics: each is refused in one line that names the
+/// key, before it is used.
+#[test]
+fn numbers_of_the_manifest() {
+    let cases: [Case; 16] = [
+        (
+            |m| m["constants"]["four_wavelengths_nm"] = vec![500.0; 5].into(),
+            "",
+            "constants.four_wavelengths_nm has 5",
+        ),
+        (
+            |m| m["constants"]["four_wavelengths_nm"] = vec![0.0; 4].into(),
+            "",
+            "constants.four_wavelengths_nm = 0",
+        ),
+        (
+            |m| m["constants"]["ground_albedo_at_four"] = vec![0.1; 5].into(),
+            "",
+            "ground_albedo_at_four has 5",
+        ),
+        (|m| m["constants"]["ground_albedo_at_four"] = vec![2.0; 4].into(), "", "ground_albedo_at_four = 2"),
+        (
+            |m| m["colour"]["matrices"]["rgb_from_four"][1] = vec![1.0; 9].into(),
+            "",
+            "colour.matrices.rgb_from_four",
+        ),
+        (|m| m["constants"]["star_illuminance_lx"] = vec![0.0].into(), "", "constants.star_illuminance_lx"),
+        (|m| m["constants"]["star_illuminance_lx"] = vec![-3.0].into(), "", "constants.star_illuminance_lx"),
+        (
+            |m| table(m, "multiple")["shape"][0] = 1_000_000_000_000_000_u64.into(),
+            "",
+            "tables.multiple.shape",
+        ),
+        (
+            |m| table(m, "multiple")["shape"] = vec![u64::from(u32::MAX); 4].into(),
+            "",
+            "tables.multiple.shape",
+        ),
+        (
+            |m| table(m, "multiple")["axes"][0]["constants"]["r_top"] = 1e300.into(),
+            "",
+            "tables.multiple.axes.altitude: r_ground, r_top",
+        ),
+        (
+            |m| m["constants"]["elek2010_aerosol_phase_row"] = vec![7.0].into(),
+            "--layout elek2010",
+            "constants.elek2010_aerosol_phase_row",
+        ),
+        (
+            |m| m["preset"]["resolved"]["top_radius_m"] = 1e300.into(),
+            "--exact",
+            "ground_radius_m, top_radius_m",
+        ),
+        (
+            |m| m["preset"]["resolved"]["ground_albedo"]["values"][0] = 7.0.into(),
+            "--exact",
+            "ground albedo at 380 nm = 7",
+        ),
+        (
+            |m| m["preset"]["resolved"]["constituents"][0]["density_factor"] = 1e300.into(),
+            "--exact",
+            "e299: 1e5 is the most",
+        ),
+        (
+            |m| m["settings"]["orders"]["first"] = 1_000_000_000_000_u64.into(),
+            "--exact",
+            "settings.orders.first",
+        ),
+        (|m| m["wavelengths"]["nm"] = vec![0.0].into(), "--exact --layout elek2010", "wavelengths.nm: 0 nm"),
+    ];
+    for (damage, options, reason) in cases {
+        let (_dir, bake) = earth_to_damage();
+        let mut value = manifest(&bake);
+        damage(&mut value);
+        fs::write(bake.join("bake.json"), value.to_string()).unwrap();
+        fs::write(bake.join("views.csv"), VIEWS).unwrap();
+        let bake = bake.display();
+        let done = words(&format!("sample {bake} --points {bake}/views.csv {options}"));
+        assert_eq!((done.code, done.err.lines().count()), (Some(2), 1), "{reason}: {}", done.err);
+        assert!(done.out.is_empty() && done.err.contains(reason), "{reason}: {}", done.err);
+    }
+}
+
+/// The entry of a table of the compact layout.
+fn table<'a>(manifest: &'a mut Value, name: &str) -> &'a mut Value {
+    let tables = manifest["tables"].as_array_mut().unwrap();
+    tables.iter_mut().find(|t| t["layout"] == "compact" && t["name"] == name).unwrap()
+}

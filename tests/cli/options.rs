@@ -43,7 +43,11 @@ fn wavelengths() {
         assert!(four.iter().all(|w| nm.contains(w)), "{given}");
         assert_eq!(sample(&bake, &["--layout", "compact"])[ZENITH].len(), count.min(4));
     }
+    let (_dir, _bake, outside) = baked("--wavelengths 300,550,900 --layout compact");
+    let warned = |manifest: &Value| manifest["warnings"].to_string().contains("lie outside 380 to 780 nm");
+    assert!(warned(&outside), "{}", outside["warnings"]);
     let (_dir, _bake, manifest) = baked("--wavelengths 440,550,680 --layout compact");
+    assert!(!warned(&manifest), "{}", manifest["warnings"]);
     assert_eq!(manifest["wavelengths"]["nm"], json!([440.0, 550.0, 680.0]));
 }
 

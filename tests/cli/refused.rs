@@ -30,6 +30,12 @@ fn presets_and_values() {
     );
     set("ground.albedo=1.5", &["presets/planets/earth.json: ground.albedo = 1.5", "between 0 and 1"]);
     set("ground.radius_km=-3", &["presets/planets/earth.json: ground.radius_km = -3"]);
+    set("top.height_km=1e6", &["presets/planets/earth.json: top", "ground radii high"]);
+    set("ground.radius_km=1e9", &["presets/planets/earth.json: top", "1e10 m is the most"]);
+    set(
+        "constituents.aerosol.density_factor=1e9",
+        &["earth.json: constituents", "vertical optical depth at", "1e5 is the most"],
+    );
     set("ground.albedo=NaN", &["ground.albedo=NaN", "not a finite number"]);
     set("ground.albedo=1e999", &["ground.albedo=1e999", "not a finite number"]);
     set("ground.albedo", &["path.to.key=value"]);
@@ -54,6 +60,7 @@ fn arguments() {
         ("--wavelengths 440,1e999", &["outside 100 to 10000 nm"]),
         ("--layout sphere", &["'sphere'", "elek2010, compact"]),
         ("--threads 0", &["--threads 0"]),
+        ("--threads 100000", &["--threads 100000", "1024 are the most"]),
         ("--isa mmx", &["'mmx'", "baseline"]),
         ("--colour-space cmyk", &["srgb, rec2020, acescg"]),
         ("--solver literal", &["--solver literal", "--orders N"]),
@@ -70,6 +77,23 @@ fn arguments() {
     let earth = earth().display();
     refused(&format!("sample {earth} --points x.csv"), &["x.csv: No such file"]);
     refused(&format!("sample {earth} --points x.csv --wavelengths 550"), &["--exact"]);
+    let dir = tempfile::tempdir().unwrap();
+    let points = dir.path().join("views.csv");
+    fs::write(&points, VIEWS).unwrap();
+    let points = points.display();
+    let threads = &["--threads 100000: 1024 are the most"][..];
+    refused(&format!("sample {earth} --points {points} --threads 100000"), threads);
+    refused(&format!("reference earth --points {points} --threads 100000"), threads);
+    refused(&format!("reference earth --points {points} --threads 0"), &["--threads 0"]);
+    for nm in ["1e-300", "99.9", "440,NaN", "1e5"] {
+        let line = format!("reference earth --points {points} --wavelengths {nm}");
+        refused(&line, &["--wavelengths: ", "outside 100 to 10000 nm"]);
+    }
+    let set = "--set constituents.aerosol.density_factor=1e9";
+    refused(
+        &format!("reference earth --points {points} {set}"),
+        &["earth.json: constituents", "vertical optical depth at"],
+    );
 }
 
 /// A missing comma is on line 2, column 9; a number too large for f64 on line 1.
