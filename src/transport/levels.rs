@@ -20,7 +20,7 @@ const STEPS: usize = 4096;
 /// A fine shell has at most this optical depth, so that what varies inside it is nearly linear.
 const SHELL_DEPTH: f64 = 0.25;
 /// Fine shells at most, unless the kinks of profiles alone make more.
-const MOST_SHELLS: usize = 600;
+const MOST_SHELLS: usize = 300;
 
 impl Levels {
     /// `coarse` levels, each interval cut into `cuts` shells; further shells end at every kink of a profile.
