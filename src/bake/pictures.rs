@@ -7,7 +7,7 @@ use crate::points::Point;
 use crate::preset::Planet;
 use crate::sky::{Component, Sky};
 
-const SIZE: usize = 160;
+const SIZE: usize = 144;
 const COLUMNS: usize = 4;
 /// Sun elevations of the skies, degrees.
 const SUNS: [f64; 6] = [60.0, 20.0, 5.0, 0.0, -4.0, -8.0];

@@ -44,7 +44,7 @@ impl Resolution {
     pub const TABLES: Resolution = Resolution {
         levels: 32,
         cuts: 3,
-        zeniths: 16,
+        zeniths: 10,
         first_azimuths: 8,
         azimuths: 6,
         sun_nodes: 48,
