@@ -211,8 +211,9 @@ pub fn converge(operator: &Operator, first: State, tolerance: f64) -> (State, Re
         applications += 1;
         let residual = largest_change(&change, &x, operator.optics.count);
         let largest = worst(&residual);
-        // Written so that a residual which is no number counts as astray.
-        let astray = !(largest <= 2.0 * smallest) || brightness(&x) > FAR_BRIGHTER * brightness(&first);
+        let astray = largest.is_infinite()
+            || largest > 2.0 * smallest
+            || brightness(&x) > FAR_BRIGHTER * brightness(&first);
         if astray || applications >= MOST_APPLICATIONS {
             return sum_until(operator, first, tolerance, applications);
         }
