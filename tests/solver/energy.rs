@@ -19,7 +19,6 @@ fn balanced(medium: &Medium, what: &str) -> Vec<Balance> {
 /// Nothing absorbs: the air only scatters and the ground reflects everything, so all light of the beam passes
 /// the limb or is scattered out. 0.1 % is what four quadratures leave at this resolution.
 #[test]
-#[ignore = "open: the preconditioned iteration diverges over albedo 1"]
 fn conservative_air_over_white_ground_loses_nothing() {
     let gas = constituent(Role::Gas, RAYLEIGH, exponential(9e3), &[5e-5, 1.5e-5], &[0.0; 2]);
     for b in balanced(&planet(3_000e3, 70e3, 1.0, vec![gas]), "white ground") {
