@@ -13,4 +13,4 @@ pub mod skies;
 mod spectral;
 pub mod tables;
 
-pub use pipeline::{Product, bake, no_layout};
+pub use pipeline::{Product, bake};

@@ -310,8 +310,3 @@ fn constants(planet: &Planet, palette: &Palette, medium: &Medium) -> BTreeMap<St
         ("elek2010_aerosol_phase_row".to_string(), vec![row as f64]),
     ])
 }
-
-/// What a user needs when no layout can be read.
-pub fn no_layout() -> Error {
-    Error::Argument("a bake needs a layout: elek2010, compact or both".into())
-}

@@ -54,9 +54,9 @@ impl Resolution {
     /// For tables of the paper's medium, whose phase functions end at degree 2 and whose layout interpolates
     /// more coarsely than this solves.
     pub const PAPER: Resolution = Resolution {
-        levels: 24,
+        levels: 20,
         cuts: 3,
-        zeniths: 12,
+        zeniths: 10,
         first_azimuths: 6,
         azimuths: 4,
         sun_nodes: 40,
