@@ -11,6 +11,7 @@ use crate::export::manifest::{Axis, Encoding};
 use crate::lanes::Lanes;
 use crate::medium::{Medium, Role};
 use crate::table::Elek2010;
+use crate::transport::Phase;
 use crate::transport::fill::{Painter, RayLight, SunPairs, Wanted};
 use crate::transport::solve::{Batch, Solution};
 use rayon::prelude::*;
@@ -75,12 +76,13 @@ fn fill(medium: &Medium, solution: &Solution, palette: &Palette, mapping: &Elek2
     let pairs = SunPairs::new(&mu_s, &cosines);
     let scatterers: Vec<usize> =
         (0..medium.constituents.len()).filter(|&c| medium.constituents[c].scatters()).collect();
-    let roles: Vec<Role> = scatterers.iter().map(|&c| medium.constituents[c].role).collect();
     let groups: Vec<Vec<usize>> = scatterers.iter().map(|&c| vec![c]).collect();
     let mut texels = vec![[0.0f32; 4]; altitudes * views * pairs.len()];
     for batch in &solution.batches {
         let painter = Painter::new(solution, batch, &groups);
         let weights = BatchWeights::new(palette, batch);
+        let last = scatterers.iter().map(|&c| (medium.constituents[c].role, &batch.optics.phase[c]));
+        let last: Vec<(Role, &Phase)> = last.collect();
         texels.par_chunks_mut(pairs.len()).enumerate().for_each_init(
             RayLight::default,
             |light, (ray, out)| {
@@ -88,13 +90,10 @@ fn fill(medium: &Medium, solution: &Solution, palette: &Palette, mapping: &Elek2
                 let (mu, hits_ground) = mapping.mu(altitude, ray % views);
                 let r = mapping.radius(ray / views);
                 painter.ray(r, mu, hits_ground, &pairs, Wanted::Both, light);
-                for (g, role) in roles.iter().enumerate() {
-                    let phase = &batch.optics.phase[scatterers[g]];
-                    crate::isa::run(
-                        #[inline(always)]
-                        || weights.add(light, g, *role, phase, mu as f32, &pairs, out),
-                    );
-                }
+                crate::isa::run(
+                    #[inline(always)]
+                    || weights.add(light, &last, mu as f32, &pairs, out),
+                );
             },
         );
     }
@@ -117,49 +116,51 @@ impl BatchWeights {
         ])
     }
 
-    #[inline(always)]
-    fn dot(&self, component: usize, light: Lanes) -> f32 {
-        sum(self.0[component] * light)
-    }
-
+    /// Adds a ray's light to its texels; `last`: role and phase function of each group of `light`.
     #[inline(always)]
     fn add(
         &self,
         light: &RayLight,
-        group: usize,
-        role: Role,
-        phase: &crate::transport::Phase,
+        last: &[(Role, &Phase)],
         mu: f32,
         pairs: &SunPairs,
         out: &mut [[f32; 4]],
     ) {
         let sine = (1.0 - mu * mu).max(0.0).sqrt();
         for (p, texel) in out.iter_mut().enumerate() {
-            let at = group * pairs.len() + p;
             let nu = pairs.mu_s[p] * mu + pairs.across[p] * sine;
-            let radiance = light.single[at] * phase.value(nu) + light.multiple[at];
-            match role {
-                Role::Gas => {
-                    for c in 0..3 {
-                        texel[c] += self.dot(c, radiance);
-                    }
+            let (mut gas, mut aerosol) = (Lanes::ZERO, Lanes::ZERO);
+            for (g, (role, phase)) in last.iter().enumerate() {
+                let at = g * pairs.len() + p;
+                let radiance = light.single[at] * phase.value(nu) + light.multiple[at];
+                match role {
+                    Role::Gas => gas += radiance,
+                    Role::Aerosol => aerosol += radiance,
                 }
-                Role::Aerosol => texel[3] += self.dot(3, radiance),
+            }
+            let [r, g, b, luminance] = self.0;
+            let sums = sums([r * gas, g * gas, b * gas, luminance * aerosol]);
+            for (t, v) in texel.iter_mut().zip(sums) {
+                *t += v;
             }
         }
     }
 }
 
-/// Sum of the lanes, in a fixed order that vectorises: halves are folded onto each other.
+/// Sums of the lanes of four vectors, in a fixed order that vectorises: quarters are folded onto each other.
 #[inline(always)]
-fn sum(v: Lanes) -> f32 {
-    let mut a = v.0;
-    for width in [8, 4, 2, 1] {
-        for k in 0..width {
-            a[k] += a[k + width];
+fn sums(v: [Lanes; 4]) -> [f32; 4] {
+    let mut quarter = [0.0f32; 16];
+    for c in 0..4 {
+        for k in 0..4 {
+            quarter[c * 4 + k] = (v[c][k] + v[c][4 + k]) + (v[c][8 + k] + v[c][12 + k]);
         }
     }
-    a[0]
+    let mut out = [0.0f32; 4];
+    for c in 0..4 {
+        out[c] = (quarter[c * 4] + quarter[c * 4 + 1]) + (quarter[c * 4 + 2] + quarter[c * 4 + 3]);
+    }
+    out
 }
 
 /// Luminance of the direct sunlight (cd/m² sr) at each altitude and sun node.

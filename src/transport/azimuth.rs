@@ -1,5 +1,39 @@
 //! Sun positions for which a ray is integrated at once, and the sun axis of the solver's state.
 
+/// Pairs that are worked on at once.
+pub const CHUNK: usize = 16;
+
+/// Some neighbouring pairs; the last chunk is filled up with copies of its first pair.
+#[derive(Clone, Debug)]
+pub struct PairChunk {
+    pub mu_s: [f32; CHUNK],
+    pub across: [f32; CHUNK],
+}
+
+impl PairChunk {
+    /// The sun's zenith cosines at a point, turned by an angle about the planet's centre.
+    #[inline(always)]
+    pub fn turned(&self, cos_turn: f32, sin_turn: f32) -> [f32; CHUNK] {
+        let mut sun = [0.0; CHUNK];
+        for k in 0..CHUNK {
+            sun[k] = self.mu_s[k] * cos_turn + self.across[k] * sin_turn;
+        }
+        sun
+    }
+}
+
+/// Where a chunk of sun positions lies on an axis: nodes, and the weights of each and of the next one.
+#[derive(Clone, Copy)]
+pub struct Places {
+    pub nodes: [u32; CHUNK],
+    pub low: [f32; CHUNK],
+    pub high: [f32; CHUNK],
+}
+
+impl Places {
+    pub const NONE: Places = Places { nodes: [0; CHUNK], low: [0.0; CHUNK], high: [0.0; CHUNK] };
+}
+
 /// Sun zenith cosines and relative azimuths; every combination is a pair.
 #[derive(Clone, Debug)]
 pub struct Pairs {
@@ -8,6 +42,7 @@ pub struct Pairs {
     /// Per pair, azimuth fastest: sun zenith cosine, and its sine times the cosine of the azimuth.
     pub mu_s: Vec<f32>,
     pub across: Vec<f32>,
+    pub chunks: Vec<PairChunk>,
 }
 
 impl Pairs {
@@ -19,7 +54,10 @@ impl Pairs {
                 across.push(((1.0 - m * m).max(0.0).sqrt() * c) as f32);
             }
         }
-        Pairs { sun_count: mu_s.len(), azimuth_count: cos_azimuth.len(), mu_s: cosines, across }
+        let chunks = cosines.chunks(CHUNK).zip(across.chunks(CHUNK));
+        let fill = |v: &[f32]| std::array::from_fn(|k| v[if k < v.len() { k } else { 0 }]);
+        let chunks = chunks.map(|(m, a)| PairChunk { mu_s: fill(m), across: fill(a) }).collect();
+        Pairs { sun_count: mu_s.len(), azimuth_count: cos_azimuth.len(), mu_s: cosines, across, chunks }
     }
 
     /// Number of pairs.
@@ -91,18 +129,20 @@ impl SunAxis {
         (node, if mu_s < self.lowest { -1.0 } else { t })
     }
 
-    /// The same for many sun positions: nodes, and the weights of each and of the next one, 0 where it is dark.
+    /// The same for a chunk of sun positions; both weights are 0 where it is dark.
     #[inline(always)]
-    pub fn locate_all(&self, mu_s: &[f32], nodes: &mut [u32], low: &mut [f32], high: &mut [f32]) {
-        for (((mu_s, node), low), high) in mu_s.iter().zip(nodes).zip(low).zip(high) {
-            let u = mu_s + SHIFT as f32;
+    pub fn places(&self, mu_s: &[f32; CHUNK]) -> Places {
+        let mut out = Places::NONE;
+        for k in 0..CHUNK {
+            let u = mu_s[k] + SHIFT as f32;
             let x = (u / (u.abs() + WIDTH as f32) - self.lowest_x) * self.scale;
             let (n, t) = node_and_place(x, self.mu_s.len());
-            let lit = if *mu_s < self.lowest { 0.0 } else { 1.0 };
-            *node = n;
-            *low = (1.0 - t) * lit;
-            *high = t * lit;
+            let lit = if mu_s[k] < self.lowest { 0.0 } else { 1.0 };
+            out.nodes[k] = n;
+            out.low[k] = (1.0 - t) * lit;
+            out.high[k] = t * lit;
         }
+        out
     }
 }
 

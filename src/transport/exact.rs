@@ -7,8 +7,8 @@
 use super::kernels::azimuth_factor;
 use super::levels::locate;
 use super::optics::Optics;
+use super::path::LONGEST_ARC;
 use super::quadrature::horizon_cosine;
-use super::rays::LONGEST_ARC;
 use super::solve::{Batch, Solution};
 use super::view::View;
 use crate::lanes::{Lanes, WIDTH};

@@ -1,11 +1,11 @@
 //! Light along one ray for many sun positions at once: what tables are filled from.
 
 use super::azimuth::{Pairs, SunAxis};
-use super::kernels::{self, Field, Scratch, SingleGroup};
+use super::kernels::{self, Field, FieldGroup, Scratch, SingleGroup};
 use super::moments::Basis;
-use super::operator::kernel_for;
 use super::optics::{Optics, PhaseLanes};
-use super::rays::{Path, Ray};
+use super::path::Path;
+use super::rays::{Attenuation, Sample};
 use super::solve::{Batch, Solution};
 use super::state::Refinement;
 use crate::lanes::{Lanes, WIDTH};
@@ -117,32 +117,33 @@ impl<'a> Painter<'a> {
         crate::isa::run(
             #[inline(always)]
             || {
-                let ray = Ray::new(&path, &geometry.levels, &self.batch.optics.extinction, false);
-                out.depth = ray.depth;
+                let attenuation = Attenuation::new(&path, &self.batch.optics.extinction);
+                out.depth = attenuation.depth;
                 out.scatterers_depth = *path.depths(&self.scatterers).last().expect("a path has a stop");
                 if wanted != Wanted::Single {
-                    self.multiple(&path, mu as f32, pairs, out);
+                    self.multiple(&path, &attenuation, mu as f32, pairs, out);
                 }
                 let peaks_are_wanted = self.groups.iter().any(|g| g.deeper.is_some());
                 if wanted != Wanted::Multiple || peaks_are_wanted {
-                    self.single(&path, &ray, mu as f32, pairs, out);
+                    self.single(&path, &attenuation, mu as f32, pairs, out);
                 }
             },
         );
     }
 
     #[inline(always)]
-    fn multiple(&self, path: &Path, mu: f32, pairs: &Pairs, out: &mut RayLight) {
-        let levels = &self.solution.geometry.levels;
-        for (group, out_group) in self.groups.iter().zip(out.multiple.chunks_exact_mut(pairs.len())) {
-            let ray = Ray::weighted(path, levels, &self.batch.optics.extinction, &group.scattering);
-            let kernel = kernel_for(group.basis.modes);
-            kernel(&ray, mu, &group.field, &self.axis, &group.basis, pairs, &mut out.scratch, out_group);
-        }
+    fn multiple(&self, path: &Path, attenuation: &Attenuation, mu: f32, pairs: &Pairs, out: &mut RayLight) {
+        let samples = Sample::all(path, &self.solution.geometry.levels, true);
+        let weights = |g: &Group| attenuation.coarse_weights(path, &g.scattering);
+        let weights: Vec<Vec<Lanes>> = self.groups.iter().map(weights).collect();
+        let groups: Vec<FieldGroup> = (self.groups.iter().zip(&weights))
+            .map(|(g, weights)| FieldGroup { field: &g.field, basis: &g.basis, weights })
+            .collect();
+        kernels::multiple(&samples, mu, &groups, &self.axis, pairs, &mut out.scratch, &mut out.multiple);
     }
 
     #[inline(always)]
-    fn single(&self, path: &Path, ray: &Ray, mu: f32, pairs: &Pairs, out: &mut RayLight) {
+    fn single(&self, path: &Path, attenuation: &Attenuation, mu: f32, pairs: &Pairs, out: &mut RayLight) {
         let optics = &self.batch.optics;
         let count = pairs.len();
         let peaked = |g: &Group| g.deeper.is_some();
@@ -150,14 +151,15 @@ impl<'a> Painter<'a> {
             .groups
             .iter()
             .map(|g| SingleGroup {
-                weights: path.scattering_weights(&optics.extinction, &g.scattering),
+                weights: attenuation.weights(path, &g.scattering),
                 deeper: g.deeper.as_ref().map(|d| (d.as_slice(), path.depths(&g.scattering))),
             })
             .collect();
         out.deeper.clear();
         out.deeper.resize(if self.groups.iter().any(peaked) { out.single.len() } else { 0 }, Lanes::ZERO);
-        let RayLight { single, deeper, scratch, .. } = out;
-        kernels::single(ray, &self.batch.sunlight, &groups, pairs, scratch, single, deeper);
+        let samples = Sample::all(path, &self.solution.geometry.levels, false);
+        let RayLight { single, deeper, .. } = out;
+        kernels::single(&samples, &self.batch.sunlight, &groups, pairs, single, deeper);
         for (g, group) in self.groups.iter().enumerate().filter(|(_, group)| peaked(group)) {
             let range = g * count..(g + 1) * count;
             let (once, multiple) = (&mut out.single[range.clone()], &mut out.multiple[range.clone()]);
@@ -218,12 +220,18 @@ fn group(solution: &Solution, batch: &Batch, members: &[usize]) -> Group {
         (0..optics.scattering.len()).map(|_| vec![Lanes::splat(1.0); geometry.levels.coarse.len()]).collect();
     let refinement = Refinement::new(geometry.axis.len(), REFINEMENT, true);
     let all = batch.state.field(&solution.basis, optics, &shares, &members[..1], &refinement);
-    let (basis, field) = needed_terms(&solution.basis, optics, members, all);
+    let (basis, field) = needed_terms(&solution.basis, optics, members, all, geometry.levels.coarse.len());
     Group { deeper, basis, field, first: members[0], scattering }
 }
 
 /// Keeps the degrees that the group's phase functions have: an isotropic group needs but one term.
-fn needed_terms(basis: &Basis, optics: &Optics, members: &[usize], all: Field) -> (Basis, Field) {
+fn needed_terms(
+    basis: &Basis,
+    optics: &Optics,
+    members: &[usize],
+    all: Field,
+    levels: usize,
+) -> (Basis, Field) {
     let needed =
         |l: usize| l == 0 || members.iter().any(|&c| optics.legendre[c][l].0.iter().any(|v| v.abs() > 1e-6));
     let mut degrees: Vec<usize> = basis.terms.iter().map(|t| t.0).filter(|&l| needed(l)).collect();
@@ -233,8 +241,10 @@ fn needed_terms(basis: &Basis, optics: &Optics, members: &[usize], all: Field) -
     if smaller.len() == basis.len() {
         return (smaller, all);
     }
-    let from: Vec<usize> =
-        smaller.terms.iter().map(|&(l, m)| basis.index(l, m).expect("a term of the larger basis")).collect();
-    let values = all.values.chunks_exact(all.terms).flat_map(|node| from.iter().map(|&t| node[t])).collect();
+    let from = smaller.terms.iter().map(|&(l, m)| basis.index(l, m).expect("a term of the larger basis"));
+    let from: Vec<usize> = from.collect();
+    let row = all.values.len() / levels / basis.len();
+    let rows = (0..levels).flat_map(|level| from.iter().map(move |&t| (level * basis.len() + t) * row));
+    let values = rows.flat_map(|at| all.values[at..][..row].iter().copied()).collect();
     (smaller.clone(), Field { terms: smaller.len(), values })
 }

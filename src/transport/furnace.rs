@@ -7,7 +7,7 @@ use super::moments::Basis;
 use super::operator::{Geometry, Operator};
 use super::optics::Optics;
 use super::quadrature::gauss_legendre;
-use super::rays::Ray;
+use super::rays::Attenuation;
 use super::solve::converge;
 use super::state::State;
 use super::sunlight::{SunColumns, Sunlight};
@@ -45,8 +45,7 @@ fn from_space(operator: &Operator, azimuths: usize) -> State {
     let mut state = operator.gather(&pairs, |level, j, _, out| {
         let (d, path) = &geometry.gathers[level].directions[j];
         if !d.hits_ground {
-            let ray = Ray::new(path, &geometry.levels, &operator.optics.extinction, false);
-            out.fill((ray.depth * -1.0).exp());
+            out.fill(Attenuation::new(path, &operator.optics.extinction).transmittance);
         }
     });
     // The sun's light never comes down diffusely at the top, so no directions above the horizontal are kept there.

@@ -1,207 +1,218 @@
 //! The two hot loops: light scattered once and light scattered more often, along one ray, for many sun
 //! positions at a time and all wavelengths of a batch.
 //!
-//! Both first find, for all sun positions at once, where a sample looks things up (loops over plain arrays,
-//! which become vector code), then gather whole vectors of wavelengths from there.
+//! Sun positions come in chunks. Where a sample looks things up is found for a chunk at once (loops over plain
+//! arrays, which become vector code); then whole vectors of wavelengths are gathered from there.
 
-use super::azimuth::{Pairs, SunAxis};
-use super::moments::{Basis, MOST_TERMS};
-use super::rays::{Ray, Sample};
+use super::azimuth::{CHUNK, PairChunk, Pairs, Places, SunAxis};
+use super::moments::{Basis, MOST_DEGREE, MOST_TERMS};
+use super::rays::Sample;
 use super::sunlight::Sunlight;
 use crate::lanes::Lanes;
 
-/// Sources of multiply scattered light, `[level][sun node][term]`: (2l+1)/4π Σ f χ_l I_lm.
+/// Sources of multiply scattered light, `[level][term][sun node]`: (2l+1)/4π Σ f χ_l I_lm.
 #[derive(Clone, Debug)]
 pub struct Field {
     pub terms: usize,
     pub values: Vec<Lanes>,
 }
 
-/// Room for a kernel's intermediate values, reused from ray to ray.
+/// Room for the kernels' intermediate values, reused from ray to ray: `[group][sun node][order]`.
 #[derive(Default)]
 pub struct Scratch {
-    sun: Vec<f32>,
-    nodes: Vec<u32>,
-    low: Vec<f32>,
-    high: Vec<f32>,
-    /// `[factor][pair]`
-    factors: Vec<f32>,
-    collapsed: Vec<Lanes>,
+    collapsed: Vec<Vec<Lanes>>,
 }
 
-impl Scratch {
-    #[inline(always)]
-    fn resize(&mut self, count: usize) {
-        self.sun.resize(count, 0.0);
-        self.nodes.resize(count, 0);
-        self.low.resize(count, 0.0);
-        self.high.resize(count, 0.0);
-    }
+/// Constituents that scatter a field by the same phase function.
+pub struct FieldGroup<'a> {
+    pub field: &'a Field,
+    pub basis: &'a Basis,
+    /// What a source of 1 at each sample adds to the radiance at the start.
+    pub weights: &'a [Lanes],
+}
 
-    /// The sun's zenith cosine at a sample, for all pairs.
-    #[inline(always)]
-    fn turn_sun(&mut self, sample: &Sample, pairs: &Pairs) {
-        for ((sun, mu_s), across) in self.sun.iter_mut().zip(&pairs.mu_s).zip(&pairs.across) {
-            *sun = mu_s * sample.cos_turn + across * sample.sin_turn;
-        }
+/// Orders that a kernel is compiled for: those of the basis, and some more that stay zero.
+fn compiled_modes(basis: &Basis) -> usize {
+    match basis.modes {
+        small @ ..=3 => small,
+        4 | 5 => 5,
+        6 | 7 => 7,
+        8 | 9 => 9,
+        _ => MOST_DEGREE + 1,
     }
 }
 
-/// Adds to `out` (one value a pair) the light scattered more than once that arrives along the ray.
+/// Adds to `out` (`[group][pair]`) the light scattered more than once that arrives along the ray.
 #[inline(always)]
-pub fn multiple<const MODES: usize>(
-    ray: &Ray,
+pub fn multiple(
+    samples: &[Sample],
     mu: f32,
-    field: &Field,
+    groups: &[FieldGroup],
     axis: &SunAxis,
-    basis: &Basis,
     pairs: &Pairs,
     scratch: &mut Scratch,
     out: &mut [Lanes],
 ) {
     let count = pairs.len();
-    let suns = axis.len();
-    scratch.resize(count);
-    scratch.factors.resize(count * MODES * 2, 0.0);
-    scratch.collapsed.resize(suns * MODES, Lanes::ZERO);
-    let least = NEGLIGIBLE * ray.samples.iter().map(|s| largest(s.weight)).fold(0.0, f32::max);
-    for sample in ray.samples.iter().filter(|s| largest(s.weight) > least) {
-        collapse::<MODES>(sample, field, suns, basis, &mut scratch.collapsed);
-        scratch.turn_sun(sample, pairs);
-        axis.locate_all(&scratch.sun, &mut scratch.nodes, &mut scratch.low, &mut scratch.high);
-        place_pairs::<MODES>(sample, mu, pairs, scratch);
-        let collapsed = &scratch.collapsed[..suns * MODES];
-        let factors: [&[f32]; 2] = {
-            let (low, high) = scratch.factors.split_at(count * MODES);
-            [low, &high[..count * MODES]]
-        };
-        for (p, (out, node)) in out.iter_mut().zip(&scratch.nodes).enumerate() {
-            let at = *node as usize * MODES;
-            let two = &collapsed[at..at + 2 * MODES];
-            let mut sum = two[0] * factors[0][p] + two[MODES] * factors[1][p];
-            for m in 1..MODES {
-                sum += two[m] * factors[0][m * count + p] + two[MODES + m] * factors[1][m * count + p];
+    let modes = groups.iter().map(|g| compiled_modes(g.basis)).max().unwrap_or(1);
+    let least = least_weight(groups.iter().map(|g| g.weights));
+    scratch.collapsed.resize(groups.len(), Vec::new());
+    for (k, sample) in samples.iter().enumerate() {
+        if groups.iter().all(|g| largest(g.weights[k]) <= least) {
+            continue;
+        }
+        for (group, collapsed) in groups.iter().zip(&mut scratch.collapsed) {
+            collapsed.resize(axis.len() * compiled_modes(group.basis), Lanes::ZERO);
+            collapse(sample, group, axis.len(), collapsed);
+        }
+        for (c, chunk) in pairs.chunks.iter().enumerate() {
+            let sun = chunk.turned(sample.cos_turn, sample.sin_turn);
+            let places = axis.places(&sun);
+            let azimuth = azimuth_factors(sample, mu, chunk, &sun, modes);
+            for (g, (group, collapsed)) in groups.iter().zip(&scratch.collapsed).enumerate() {
+                let out = &mut out[g * count..][..count][c * CHUNK..];
+                let weight = group.weights[k];
+                match compiled_modes(group.basis) {
+                    1 => add_field::<1>(collapsed, &places, &azimuth, weight, out),
+                    2 => add_field::<2>(collapsed, &places, &azimuth, weight, out),
+                    3 => add_field::<3>(collapsed, &places, &azimuth, weight, out),
+                    5 => add_field::<5>(collapsed, &places, &azimuth, weight, out),
+                    7 => add_field::<7>(collapsed, &places, &azimuth, weight, out),
+                    9 => add_field::<9>(collapsed, &places, &azimuth, weight, out),
+                    _ => add_field::<{ MOST_DEGREE + 1 }>(collapsed, &places, &azimuth, weight, out),
+                }
             }
-            *out += sum * sample.weight;
         }
     }
 }
 
-/// Sums the terms over degrees at a sample's own direction: one value a sun node and order.
+/// Adds a chunk's light of one sample: linear between sun nodes, summed over the orders.
 #[inline(always)]
-fn collapse<const MODES: usize>(
-    sample: &Sample,
-    field: &Field,
-    suns: usize,
-    basis: &Basis,
+fn add_field<const MODES: usize>(
+    collapsed: &[Lanes],
+    places: &Places,
+    azimuth: &AzimuthFactors,
+    weight: Lanes,
     out: &mut [Lanes],
 ) {
+    let mut low = [[0.0f32; CHUNK]; MODES];
+    let mut high = [[0.0f32; CHUNK]; MODES];
+    for m in 0..MODES {
+        for k in 0..CHUNK {
+            low[m][k] = azimuth[m][k] * places.low[k];
+            high[m][k] = azimuth[m][k] * places.high[k];
+        }
+    }
+    for (k, out) in (0..CHUNK).zip(out) {
+        let two = &collapsed[places.nodes[k] as usize * MODES..][..2 * MODES];
+        let mut sum = two[0] * low[0][k] + two[MODES] * high[0][k];
+        for m in 1..MODES {
+            sum += two[m] * low[m][k] + two[MODES + m] * high[m][k];
+        }
+        *out += sum * weight;
+    }
+}
+
+/// Sums the terms over degrees at a sample's own direction and place between levels: one value a sun node and
+/// order.
+#[inline(always)]
+fn collapse(sample: &Sample, group: &FieldGroup, suns: usize, out: &mut [Lanes]) {
     let mut p = [0.0; MOST_TERMS];
-    basis.fill(f64::from(sample.mu), &mut p);
-    let terms = field.terms;
-    let stride = suns * terms;
-    let level = sample.level as usize;
-    let below = &field.values[level * stride..][..stride];
-    if sample.place == 0.0 {
-        sum_terms::<MODES>(below, terms, &p, basis, out);
-        return;
-    }
-    let above = &field.values[(level + 1) * stride..][..stride];
-    if sample.place == 1.0 {
-        sum_terms::<MODES>(above, terms, &p, basis, out);
-        return;
-    }
-    for (node, out) in out.chunks_exact_mut(MODES).enumerate() {
-        let (below, above) = (&below[node * terms..][..terms], &above[node * terms..][..terms]);
-        for (m, out) in out.iter_mut().enumerate() {
-            let mut sum = Lanes::ZERO;
-            for t in basis.of_order(m) {
-                sum += (below[t] * (1.0 - sample.place) + above[t] * sample.place) * p[t];
+    group.basis.fill(f64::from(sample.mu), &mut p);
+    let stride = compiled_modes(group.basis);
+    let terms = group.field.terms;
+    for m in 0..stride {
+        // Rows of the field and their factors.
+        let mut rows = [(0usize, 0.0f32); 2 * (MOST_DEGREE + 1)];
+        let mut count = 0;
+        for (level, share) in [(sample.level, 1.0 - sample.place), (sample.level + 1, sample.place)] {
+            for t in group.basis.of_order(m).filter(|_| share > 0.0) {
+                rows[count] = ((level as usize * terms + t) * suns, share * p[t]);
+                count += 1;
             }
-            *out = sum;
+        }
+        for out in out[m..].iter_mut().step_by(stride) {
+            *out = Lanes::ZERO;
+        }
+        let values = &group.field.values;
+        for rows in rows[..count].chunks(4) {
+            match rows.len() {
+                1 => add_rows::<1>(values, rows, suns, stride, &mut out[m..]),
+                2 => add_rows::<2>(values, rows, suns, stride, &mut out[m..]),
+                3 => add_rows::<3>(values, rows, suns, stride, &mut out[m..]),
+                _ => add_rows::<4>(values, rows, suns, stride, &mut out[m..]),
+            }
         }
     }
 }
 
 #[inline(always)]
-fn sum_terms<const MODES: usize>(
-    from: &[Lanes],
-    terms: usize,
-    p: &[f32; MOST_TERMS],
-    basis: &Basis,
+fn add_rows<const N: usize>(
+    values: &[Lanes],
+    rows: &[(usize, f32)],
+    suns: usize,
+    stride: usize,
     out: &mut [Lanes],
 ) {
-    for (node, out) in from.chunks_exact(terms).zip(out.chunks_exact_mut(MODES)) {
-        for (m, out) in out.iter_mut().enumerate() {
-            let mut sum = Lanes::ZERO;
-            for t in basis.of_order(m) {
-                sum += node[t] * p[t];
-            }
-            *out = sum;
+    let factors: [f32; N] = std::array::from_fn(|k| rows[k].1);
+    let rows: [&[Lanes]; N] = std::array::from_fn(|k| &values[rows[k].0..][..suns]);
+    for (node, out) in (0..suns).zip(out.iter_mut().step_by(stride)) {
+        let mut sum = rows[0][node] * factors[0];
+        for k in 1..N {
+            sum += rows[k][node] * factors[k];
         }
+        *out += sum;
     }
 }
 
-/// For every pair and order m the factor sin^m θ s^min(m,2) cos mφ at the sample, times the weight of the sun
-/// node below and of the next one. From X = nu − mu mu_s = sinθ s cosφ, by cos (m+1)φ = 2 cosφ cos mφ −
-/// cos (m−1)φ; cosφ is bounded, and where it is ill-defined the factors in front of it vanish.
+/// sin^m θ s^min(m,2) cos mφ, `[order m][pair]`.
+type AzimuthFactors = [[f32; CHUNK]; MOST_DEGREE + 1];
+
+/// The factors of the first `modes` orders at a sample. From X = nu − mu mu_s = sinθ s cosφ, by cos (m+1)φ =
+/// 2 cosφ cos mφ − cos (m−1)φ; cosφ is bounded, and where it is ill-defined the factors in front of it vanish.
 #[inline(always)]
-fn place_pairs<const MODES: usize>(sample: &Sample, mu: f32, pairs: &Pairs, scratch: &mut Scratch) {
-    const CHUNK: usize = 16;
-    let count = pairs.len();
+fn azimuth_factors(
+    sample: &Sample,
+    mu: f32,
+    chunk: &PairChunk,
+    sun: &[f32; CHUNK],
+    modes: usize,
+) -> AzimuthFactors {
     let sine = (1.0 - mu * mu).max(0.0).sqrt();
     let sine2 = (1.0 - sample.mu * sample.mu).max(0.0);
+    let mut q = [[0.0f32; CHUNK]; MOST_DEGREE + 1];
+    let mut y = [0.0f32; CHUNK];
+    for k in 0..CHUNK {
+        let s2 = 1.0 - sun[k] * sun[k];
+        let x = chunk.mu_s[k] * mu + chunk.across[k] * sine - sample.mu * sun[k];
+        y[k] = (if s2 > 0.0 { s2 } else { 0.0 }) * sine2;
+        q[0][k] = 1.0;
+        q[1][k] = x;
+        q[2][k] = 2.0 * x * x - y[k];
+    }
+    if modes <= 3 {
+        return q;
+    }
     let local_sine = sine2.sqrt();
-    let (low, high) = scratch.factors.split_at_mut(count * MODES);
-    for from in (0..count).step_by(CHUNK) {
-        let n = CHUNK.min(count - from);
-        // The last chunk is filled up with copies of its first pair.
-        let pair = |k: usize| from + if k < n { k } else { 0 };
-        let (mut x, mut y, mut c) = ([0.0f32; CHUNK], [0.0f32; CHUNK], [0.0f32; CHUNK]);
+    let (mut c, mut now) = ([0.0f32; CHUNK], [0.0f32; CHUNK]);
+    for k in 0..CHUNK {
+        let length = y[k].sqrt();
+        let ratio = q[1][k] / if length > 1e-6 { length } else { 1e-6 };
+        let ratio = if ratio > 1.0 { 1.0 } else { ratio };
+        c[k] = if ratio < -1.0 { -1.0 } else { ratio };
+        now[k] = 2.0 * c[k] * c[k] - 1.0;
+    }
+    let (mut before, mut power) = (c, y);
+    for q in &mut q[3..modes] {
         for k in 0..CHUNK {
-            let p = pair(k);
-            let sun = scratch.sun[p];
-            let s2 = 1.0 - sun * sun;
-            x[k] = pairs.mu_s[p] * mu + pairs.across[p] * sine - sample.mu * sun;
-            y[k] = (if s2 > 0.0 { s2 } else { 0.0 }) * sine2;
-        }
-        for k in 0..CHUNK {
-            let length = y[k].sqrt();
-            let ratio = x[k] / if length > 1e-6 { length } else { 1e-6 };
-            let ratio = if ratio > 1.0 { 1.0 } else { ratio };
-            c[k] = if ratio < -1.0 { -1.0 } else { ratio };
-        }
-        let mut q = [[0.0f32; CHUNK]; MODES];
-        let (mut before, mut now, mut power) = (c, [0.0f32; CHUNK], y);
-        for k in 0..CHUNK {
-            now[k] = 2.0 * c[k] * c[k] - 1.0;
-            q[0][k] = 1.0;
-            if MODES > 1 {
-                q[1][k] = x[k];
-            }
-            if MODES > 2 {
-                q[2][k] = 2.0 * x[k] * x[k] - y[k];
-            }
-        }
-        for q in q.iter_mut().skip(3) {
-            for k in 0..CHUNK {
-                let next = 2.0 * c[k] * now[k] - before[k];
-                before[k] = now[k];
-                now[k] = next;
-                power[k] *= local_sine;
-                q[k] = power[k] * next;
-            }
-        }
-        for (m, q) in q.iter().enumerate() {
-            let at = m * count + from;
-            let weights = scratch.low[from..from + n].iter().zip(&scratch.high[from..from + n]);
-            let out = low[at..at + n].iter_mut().zip(&mut high[at..at + n]);
-            for (((low, high), (w0, w1)), q) in out.zip(weights).zip(q) {
-                *low = q * w0;
-                *high = q * w1;
-            }
+            let next = 2.0 * c[k] * now[k] - before[k];
+            before[k] = now[k];
+            now[k] = next;
+            power[k] *= local_sine;
+            q[k] = power[k] * next;
         }
     }
+    q
 }
 
 /// The same factor for one pair: sin^m θ s^min(m,2) cos mφ.
@@ -226,7 +237,7 @@ pub fn azimuth_factor(m: usize, x: f32, s2: f32, sine2: f32) -> f32 {
 
 /// A group of constituents whose single scattering is integrated as one, along one ray.
 pub struct SingleGroup<'a> {
-    /// What sunlight at each sample adds to the radiance at the start, see [`super::rays::Path`].
+    /// What sunlight at each sample adds to the radiance at the start, see [`super::rays::Attenuation`].
     pub weights: Vec<Lanes>,
     /// For groups with a forward peak: T τ towards the sun, see [`Sunlight::times_depth`], and the scattering
     /// depth of the group from the start to each sample.
@@ -238,55 +249,114 @@ pub struct SingleGroup<'a> {
 /// scattering depths that it crosses to the eye and to the sun.
 #[inline(always)]
 pub fn single(
-    ray: &Ray,
+    samples: &[Sample],
     sunlight: &Sunlight,
     groups: &[SingleGroup],
     pairs: &Pairs,
-    scratch: &mut Scratch,
     once: &mut [Lanes],
     deeper: &mut [Lanes],
 ) {
     let count = pairs.len();
-    scratch.resize(count);
-    let brightest = |g: &SingleGroup| g.weights.iter().map(|w| largest(*w)).fold(0.0, f32::max);
-    let least = NEGLIGIBLE * groups.iter().map(brightest).fold(0.0, f32::max);
-    for (k, sample) in ray.samples.iter().enumerate() {
-        let counts = |g: &SingleGroup| largest(g.weights[k]) > least;
-        if !groups.iter().any(counts) {
-            continue;
+    let looks = looks(samples, groups);
+    let mut outputs = Vec::new();
+    for (group, out) in groups.iter().zip(once.chunks_exact_mut(count)) {
+        outputs
+            .push(Output { weights: looks.iter().map(|l| group.weights[l.sample] * l.share).collect(), out });
+    }
+    let mut sunward = Vec::new();
+    for (g, (group, out)) in groups.iter().zip(deeper.chunks_exact_mut(count)).enumerate() {
+        if let Some((depths, behind)) = &group.deeper {
+            let weights = looks.iter().zip(&outputs[g].weights).map(|(l, w)| *w * behind[l.sample]).collect();
+            sunward.push((*depths, g, outputs.len()));
+            outputs.push(Output { weights, out });
         }
-        scratch.turn_sun(sample, pairs);
-        let level = sample.level as usize;
-        for (level, share) in [(level, 1.0 - sample.place), (level + 1, sample.place)] {
-            if share <= 0.0 {
-                continue;
-            }
-            sunlight.locate(level, &scratch.sun, &mut scratch.nodes, &mut scratch.low, &mut scratch.high);
-            let table = sunlight.level(level);
-            if let [a, b] = groups
-                && counts(a)
-                && counts(b)
-            {
-                let (first, second) = once.split_at_mut(count);
-                add_light(
-                    table,
-                    [a.weights[k] * share, b.weights[k] * share],
-                    scratch,
-                    [first, &mut second[..count]],
-                );
-            } else {
-                for (group, once) in
-                    groups.iter().zip(once.chunks_exact_mut(count)).filter(|(g, _)| counts(g))
-                {
-                    add_light(table, [group.weights[k] * share], scratch, [once]);
+    }
+    for outputs in outputs.chunks_mut(4) {
+        match outputs {
+            [a] => add_light(&looks, sunlight, sunlight.all(), pairs, [a]),
+            [a, b] => add_light(&looks, sunlight, sunlight.all(), pairs, [a, b]),
+            [a, b, c] => add_light(&looks, sunlight, sunlight.all(), pairs, [a, b, c]),
+            [a, b, c, d] => add_light(&looks, sunlight, sunlight.all(), pairs, [a, b, c, d]),
+            _ => unreachable!("chunks of four"),
+        }
+    }
+    for (depths, from, to) in sunward {
+        let weights = std::mem::take(&mut outputs[from].weights);
+        let mut output = Output { weights, out: &mut *outputs[to].out };
+        add_light(&looks, sunlight, depths, pairs, [&mut output]);
+    }
+}
+
+/// One look at the table of sunlight: a sample on one of the two levels that it lies between.
+#[derive(Clone, Copy)]
+struct Look {
+    sample: usize,
+    level: usize,
+    cos_turn: f32,
+    sin_turn: f32,
+    /// Weight of this level; 0 where a block was filled up.
+    share: f32,
+}
+
+/// What is summed along the ray: a weight for each look, and one value a pair.
+struct Output<'a> {
+    weights: Vec<Lanes>,
+    out: &'a mut [Lanes],
+}
+
+/// Looks that are summed before anything is stored.
+const BLOCK: usize = 4;
+
+/// All looks of a ray that matter, filled up to whole blocks.
+fn looks(samples: &[Sample], groups: &[SingleGroup]) -> Vec<Look> {
+    let least = least_weight(groups.iter().map(|g| g.weights.as_slice()));
+    let mut looks: Vec<Look> = Vec::with_capacity(samples.len() + BLOCK);
+    for (k, s) in samples.iter().enumerate() {
+        if groups.iter().any(|g| largest(g.weights[k]) > least) {
+            let (cos_turn, sin_turn, level) = (s.cos_turn, s.sin_turn, s.level as usize);
+            for (level, share) in [(level, 1.0 - s.place), (level + 1, s.place)] {
+                if share > 0.0 {
+                    looks.push(Look { sample: k, level, cos_turn, sin_turn, share });
                 }
             }
-            for (g, group) in groups.iter().enumerate().filter(|(_, g)| counts(g)) {
-                if let Some((depths, behind)) = &group.deeper {
-                    let factor = group.weights[k] * share;
-                    let depths = sunlight.level_of(depths, level);
-                    let out = &mut deeper[g * count..][..count];
-                    add_deeper(table, depths, factor, factor * behind[k], scratch, out);
+        }
+    }
+    if let Some(&last) = looks.last() {
+        looks.resize(looks.len().next_multiple_of(BLOCK), Look { share: 0.0, ..last });
+    }
+    looks
+}
+
+/// Adds to each output the values of a table like that of `sunlight`, weighted and summed over all looks.
+#[inline(always)]
+fn add_light<const N: usize>(
+    looks: &[Look],
+    sunlight: &Sunlight,
+    table: &[Lanes],
+    pairs: &Pairs,
+    outputs: [&mut Output; N],
+) {
+    for (b, looks) in looks.chunks_exact(BLOCK).enumerate() {
+        let rows: [&[Lanes]; BLOCK] = std::array::from_fn(|i| sunlight.level_of(table, looks[i].level));
+        let weights: [[Lanes; N]; BLOCK] =
+            std::array::from_fn(|i| std::array::from_fn(|n| outputs[n].weights[b * BLOCK + i]));
+        for (c, chunk) in pairs.chunks.iter().enumerate() {
+            let mut places = [Places::NONE; BLOCK];
+            for (places, look) in places.iter_mut().zip(looks) {
+                sunlight.place(look.level, &chunk.turned(look.cos_turn, look.sin_turn), places);
+            }
+            let here = c * CHUNK..pairs.len().min((c + 1) * CHUNK);
+            for (k, p) in (0..CHUNK).zip(here) {
+                let mut sums: [Lanes; N] = std::array::from_fn(|n| outputs[n].out[p]);
+                for i in 0..BLOCK {
+                    let two = &rows[i][places[i].nodes[k] as usize..][..2];
+                    let light = two[0] * places[i].low[k] + two[1] * places[i].high[k];
+                    for n in 0..N {
+                        sums[n] += light * weights[i][n];
+                    }
+                }
+                for n in 0..N {
+                    outputs[n].out[p] = sums[n];
                 }
             }
         }
@@ -296,42 +366,12 @@ pub fn single(
 /// What a sample may add, as a share of the ray's largest, and still be left out: haze high up.
 pub const NEGLIGIBLE: f32 = 1e-7;
 
+fn least_weight<'a>(weights: impl Iterator<Item = &'a [Lanes]>) -> f32 {
+    NEGLIGIBLE * weights.flatten().map(|w| largest(*w)).fold(0.0, f32::max)
+}
+
 /// The largest lane.
 #[inline(always)]
 pub fn largest(v: Lanes) -> f32 {
     v.0.iter().fold(0.0, |a, &b| if b > a { b } else { a })
-}
-
-#[inline(always)]
-fn add_light<const N: usize>(
-    table: &[Lanes],
-    factors: [Lanes; N],
-    scratch: &Scratch,
-    out: [&mut [Lanes]; N],
-) {
-    let places = scratch.nodes.iter().zip(&scratch.low).zip(&scratch.high);
-    for (p, ((node, low), high)) in places.enumerate() {
-        let two = &table[*node as usize..][..2];
-        let light = two[0] * *low + two[1] * *high;
-        for g in 0..N {
-            out[g][p] += light * factors[g];
-        }
-    }
-}
-
-#[inline(always)]
-fn add_deeper(
-    table: &[Lanes],
-    depths: &[Lanes],
-    factor: Lanes,
-    behind: Lanes,
-    scratch: &Scratch,
-    out: &mut [Lanes],
-) {
-    let places = scratch.nodes.iter().zip(&scratch.low).zip(&scratch.high);
-    for (out, ((node, low), high)) in out.iter_mut().zip(places) {
-        let two = &table[*node as usize..][..2];
-        let more = &depths[*node as usize..][..2];
-        *out += (two[0] * *low + two[1] * *high) * behind + (more[0] * *low + more[1] * *high) * factor;
-    }
 }

@@ -20,6 +20,7 @@ mod levels;
 mod moments;
 mod operator;
 mod optics;
+mod path;
 mod precondition;
 mod quadrature;
 mod rays;

@@ -18,7 +18,30 @@ pub struct Basis {
     pub orders: Vec<usize>,
     /// Where the terms of each order begin, and one more.
     starts: Vec<usize>,
-    norms: Vec<f64>,
+    /// The recurrence over degrees of each order, one after the other.
+    steps: Vec<Step>,
+}
+
+/// P_l^m / sin^m θ = a mu P_(l−1)^m − b P_(l−2)^m, begun at l = m with b the value itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Step {
+    begins: bool,
+    a: f64,
+    b: f64,
+    norm: f64,
+    /// Number of the term; none for a degree that the basis lacks.
+    term: Option<usize>,
+}
+
+impl Step {
+    fn new(l: usize, m: usize, term: Option<usize>) -> Self {
+        let (a, b) = if l == m {
+            (0.0, (1..=m).fold(1.0, |p, k| p * (2 * k - 1) as f64))
+        } else {
+            ((2 * l - 1) as f64 / (l - m) as f64, (l + m - 1) as f64 / (l - m) as f64)
+        };
+        Step { begins: l == m, a, b, norm: norm(l, m), term }
+    }
 }
 
 /// Largest degree that a basis may hold, and the number of its terms.
@@ -33,10 +56,13 @@ impl Basis {
         for m in 0..=largest {
             terms.extend(degrees.iter().filter(|&&l| l >= m).map(|&l| (l, m)));
         }
-        let norms = terms.iter().map(|&(l, m)| norm(l, m)).collect();
+        let mut steps = Vec::new();
+        for m in 0..=largest {
+            steps.extend((m..=largest).map(|l| Step::new(l, m, terms.iter().position(|&t| t == (l, m)))));
+        }
         let orders: Vec<usize> = terms.iter().map(|t| t.1).collect();
         let starts = (0..=MOST_DEGREE + 1).map(|m| orders.partition_point(|&o| o < m)).collect();
-        Basis { terms, modes: largest + 1, orders, starts, norms }
+        Basis { terms, modes: largest + 1, orders, starts, steps }
     }
 
     pub fn len(&self) -> usize {
@@ -59,15 +85,13 @@ impl Basis {
     /// P̄_lm(mu) for every term, in single precision.
     #[inline(always)]
     pub fn fill(&self, mu: f64, out: &mut [f32; MOST_TERMS]) {
-        for ((&(l, m), norm), out) in self.terms.iter().zip(&self.norms).zip(out.iter_mut()) {
-            // P_m^m / sin^m θ = (2m−1)!!, then upwards in degree.
-            let mut now = (1..=m).fold(1.0, |p, k| p * (2 * k - 1) as f64);
-            let mut before = 0.0;
-            for k in m + 1..=l {
-                let next = ((2 * k - 1) as f64 * mu * now - (k + m - 1) as f64 * before) / (k - m) as f64;
-                (before, now) = (now, next);
+        let (mut now, mut before) = (0.0, 0.0);
+        for step in &self.steps {
+            (before, now) =
+                if step.begins { (0.0, step.b) } else { (now, step.a * mu * now - step.b * before) };
+            if let Some(t) = step.term {
+                out[t] = (step.norm * now) as f32;
             }
-            *out = (norm * now) as f32;
         }
     }
 

@@ -2,12 +2,13 @@
 
 use super::azimuth::{Pairs, SunAxis, midpoint_azimuths};
 use super::column::Shells;
-use super::kernels::{self, Field, Scratch, SingleGroup};
+use super::kernels::{self, FieldGroup, Scratch, SingleGroup};
 use super::levels::Levels;
 use super::moments::Basis;
 use super::optics::Optics;
+use super::path::Path;
 use super::quadrature::{Direction, directions};
-use super::rays::{Path, Ray};
+use super::rays::{Attenuation, Hit, Ray, Sample};
 use super::state::{Refinement, State};
 use super::sunlight::Sunlight;
 use crate::lanes::Lanes;
@@ -87,7 +88,7 @@ impl<'a> Operator<'a> {
                 let build = |(_, path): &(Direction, Path)| {
                     crate::isa::run(
                         #[inline(always)]
-                        || Ray::new(path, levels, &optics.extinction, true),
+                        || Ray::new(path, levels, &optics.extinction),
                     )
                 };
                 g.directions.iter().map(build).collect()
@@ -145,23 +146,15 @@ impl<'a> Operator<'a> {
     pub fn apply(&self, state: &State) -> State {
         let field =
             state.field(self.basis, self.optics, &self.shares, &self.scatterers, &self.geometry.refinement);
-        let kernel = kernel_for(self.basis.modes);
         let ground_radiance = self.optics.albedo * FRAC_1_PI as f32;
         self.gather(
             &self.pairs,
             #[inline(always)]
             |level, j, scratch, out| {
                 let (d, ray) = (&self.geometry.gathers[level].directions[j].0, &self.rays[level][j]);
-                kernel(
-                    ray,
-                    d.mu as f32,
-                    &field,
-                    &self.geometry.fine_axis,
-                    self.basis,
-                    &self.pairs,
-                    scratch,
-                    out,
-                );
+                let group = FieldGroup { field: &field, basis: self.basis, weights: &ray.weights };
+                let axis = &self.geometry.fine_axis;
+                kernels::multiple(&ray.samples, d.mu as f32, &[group], axis, &self.pairs, scratch, out);
                 if let Some(hit) = &ray.hit {
                     let factor = hit.transmittance * ground_radiance;
                     for (p, out) in out.iter_mut().enumerate() {
@@ -182,16 +175,18 @@ impl<'a> Operator<'a> {
         self.gather(
             &pairs,
             #[inline(always)]
-            |level, j, scratch, out| {
+            |level, j, _, out| {
                 let (d, path) = &geometry.gathers[level].directions[j];
-                let ray = Ray::new(path, &geometry.levels, &self.optics.extinction, false);
-                let weights = |s: &Vec<Lanes>| path.scattering_weights(&self.optics.extinction, s);
-                let groups: Vec<SingleGroup> =
-                    scattering.iter().map(|s| SingleGroup { weights: weights(s), deeper: None }).collect();
+                let samples = Sample::all(path, &geometry.levels, false);
+                let attenuation = Attenuation::new(path, &self.optics.extinction);
+                let group =
+                    |s: &Vec<Lanes>| SingleGroup { weights: attenuation.weights(path, s), deeper: None };
+                let groups: Vec<SingleGroup> = scattering.iter().map(group).collect();
                 let mut once = vec![Lanes::ZERO; groups.len() * pairs.len()];
-                kernels::single(&ray, self.sunlight, &groups, &pairs, scratch, &mut once, &mut []);
+                kernels::single(&samples, self.sunlight, &groups, &pairs, &mut once, &mut []);
                 self.add_phases(d.mu as f32, &pairs, &once, out);
-                if let Some(hit) = &ray.hit {
+                if path.hits_ground {
+                    let hit = Hit::at(path, attenuation.transmittance);
                     let factor = hit.transmittance * self.optics.albedo * FRAC_1_PI as f32;
                     for (p, out) in out.iter_mut().enumerate() {
                         let mu_s = pairs.mu_s[p] * hit.cos_turn + pairs.across[p] * hit.sin_turn;
@@ -225,23 +220,6 @@ pub fn interpolate(row: &[Lanes], axis: &SunAxis, mu_s: f32) -> Lanes {
         return Lanes::ZERO;
     }
     row[n as usize] * (1.0 - t) + row[n as usize + 1] * t
-}
-
-/// The kernel compiled for a number of azimuth modes.
-#[inline(always)]
-pub fn kernel_for(
-    modes: usize,
-) -> impl Fn(&Ray, f32, &Field, &SunAxis, &Basis, &Pairs, &mut Scratch, &mut [Lanes]) {
-    #[inline(always)]
-    move |ray, mu, field, axis, basis, pairs, scratch, out| match modes {
-        1 => kernels::multiple::<1>(ray, mu, field, axis, basis, pairs, scratch, out),
-        2 => kernels::multiple::<2>(ray, mu, field, axis, basis, pairs, scratch, out),
-        3 => kernels::multiple::<3>(ray, mu, field, axis, basis, pairs, scratch, out),
-        4 | 5 => kernels::multiple::<5>(ray, mu, field, axis, basis, pairs, scratch, out),
-        6 | 7 => kernels::multiple::<7>(ray, mu, field, axis, basis, pairs, scratch, out),
-        8 | 9 => kernels::multiple::<9>(ray, mu, field, axis, basis, pairs, scratch, out),
-        _ => kernels::multiple::<11>(ray, mu, field, axis, basis, pairs, scratch, out),
-    }
 }
 
 /// Projects radiance at azimuth midpoints onto cos mφ and onto the moments.

@@ -45,12 +45,12 @@ impl Preconditioner {
         for (level, gather) in operator.geometry.gathers.iter().enumerate() {
             for ((d, _), ray) in gather.directions.iter().zip(&operator.rays[level]) {
                 row.fill(Lanes::ZERO);
-                for s in &ray.samples {
+                for (s, weight) in ray.samples.iter().zip(&ray.weights) {
                     let p = operator.basis.polynomials(f64::from(s.mu));
                     for (n, share) in [(s.level as usize, 1.0 - s.place), (s.level as usize + 1, s.place)] {
                         if share > 0.0 {
                             for (k, &t) in self.terms.iter().enumerate() {
-                                row[n * count + k] += s.weight * sources[n][t] * (share * p[t] as f32);
+                                row[n * count + k] += *weight * sources[n][t] * (share * p[t] as f32);
                             }
                         }
                     }

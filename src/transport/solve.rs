@@ -59,8 +59,8 @@ impl Resolution {
         zeniths: 10,
         first_azimuths: 6,
         azimuths: 4,
-        sun_nodes: 40,
-        sunlight_nodes: 160,
+        sun_nodes: 32,
+        sunlight_nodes: 96,
         degree: 2,
     };
     /// For answers that tables are measured against.

@@ -98,16 +98,17 @@ impl Refinement {
         self.rows.len()
     }
 
+    /// From `[node][term]` to `[term][fine node]`.
     #[inline(always)]
     fn apply(&self, from: &[Lanes], out: &mut [Lanes], factors: &[Lanes]) {
         let terms = factors.len();
-        for ((first, weights), out) in self.rows.iter().zip(out.chunks_exact_mut(terms)) {
-            for t in 0..terms {
+        for (t, out) in out.chunks_exact_mut(self.suns()).enumerate() {
+            for ((first, weights), out) in self.rows.iter().zip(out) {
                 let mut sum = Lanes::ZERO;
                 for (k, w) in weights.iter().enumerate() {
                     sum += from[(first + k) * terms + t] * *w;
                 }
-                out[t] = sum * factors[t];
+                *out = sum * factors[t];
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Transmittance towards the sun, tabulated for each fine level against the distance to the top.
 
-use super::azimuth::node_and_place;
+use super::azimuth::{CHUNK, Places, node_and_place};
 use super::column::Shells;
 use super::levels::Levels;
 use super::quadrature::horizon_cosine;
@@ -120,20 +120,24 @@ impl Sunlight {
         self.values.par_iter().enumerate().map(|(n, t)| *t * depth(n)).collect()
     }
 
-    /// Places of sun cosines in the table of one level: node numbers and the weights of the node and the next
-    /// one, both 0 behind the planet.
+    /// Places of a chunk of sun cosines in the table of one level; both weights are 0 behind the planet.
     #[inline(always)]
-    pub fn locate(&self, level: usize, mu_s: &[f32], nodes: &mut [u32], low: &mut [f32], high: &mut [f32]) {
+    pub fn place(&self, level: usize, mu_s: &[f32; CHUNK], out: &mut Places) {
         let a = self.axis[level];
-        for (((mu, node), low), high) in mu_s.iter().zip(nodes).zip(low).zip(high) {
-            let along = a.r * mu;
+        for k in 0..CHUNK {
+            let along = a.r * mu_s[k];
             let d = (along * along + a.depth2).sqrt() - along;
             let (n, t) = node_and_place((d - a.shortest) * a.scale, self.nodes);
-            let lit = if *mu >= a.horizon { 1.0 } else { 0.0 };
-            *node = n;
-            *low = (1.0 - t) * lit;
-            *high = t * lit;
+            let lit = if mu_s[k] >= a.horizon { 1.0 } else { 0.0 };
+            out.nodes[k] = n;
+            out.low[k] = (1.0 - t) * lit;
+            out.high[k] = t * lit;
         }
+    }
+
+    /// The table of transmittance, `[level][node]`.
+    pub fn all(&self) -> &[Lanes] {
+        &self.values
     }
 
     /// The table of one level, one value a node.
@@ -151,10 +155,10 @@ impl Sunlight {
     /// Transmittance from a level to a sun of zenith cosine `mu_s`.
     #[inline(always)]
     pub fn at(&self, level: usize, mu_s: f32) -> Lanes {
-        let (mut node, mut low, mut high) = ([0u32], [0.0f32], [0.0f32]);
-        self.locate(level, &[mu_s], &mut node, &mut low, &mut high);
-        let two = &self.level(level)[node[0] as usize..][..2];
-        two[0] * low[0] + two[1] * high[0]
+        let mut places = Places::NONE;
+        self.place(level, &[mu_s; CHUNK], &mut places);
+        let two = &self.level(level)[places.nodes[0] as usize..][..2];
+        two[0] * places.low[0] + two[1] * places.high[0]
     }
 }
 
