@@ -1,13 +1,13 @@
 //! Light along one ray for many sun positions at once: what tables are filled from.
 
-use super::azimuth::{Pairs, SunAxis};
+use super::azimuth::Pairs;
 use super::kernels::{self, Field, FieldGroup, Scratch, SingleGroup};
 use super::moments::Basis;
 use super::optics::{Optics, PhaseLanes};
 use super::path::Path;
 use super::rays::{Attenuation, Sample};
+use super::refined::RefinedAxis;
 use super::solve::{Batch, Solution};
-use super::state::Refinement;
 use crate::lanes::{Lanes, WIDTH};
 
 pub use super::azimuth::Pairs as SunPairs;
@@ -19,7 +19,7 @@ const REFINEMENT: usize = 4;
 pub struct Painter<'a> {
     solution: &'a Solution,
     batch: &'a Batch,
-    axis: SunAxis,
+    axis: RefinedAxis,
     groups: Vec<Group>,
     /// Extinction per constituent, 0 for those that only absorb.
     scatterers: Vec<Lanes>,
@@ -61,8 +61,13 @@ pub struct RayLight {
 impl<'a> Painter<'a> {
     /// `groups`: lists of constituents; those of one group share a phase function.
     pub fn new(solution: &'a Solution, batch: &'a Batch, groups: &[Vec<usize>]) -> Self {
-        let axis = solution.geometry.axis.refined(REFINEMENT);
-        let groups = groups.iter().filter(|g| !g.is_empty()).map(|g| group(solution, batch, g)).collect();
+        let mut groups: Vec<Group> =
+            groups.iter().filter(|g| !g.is_empty()).map(|g| group(solution, batch, g)).collect();
+        let terms = groups.iter().map(|g| g.basis.len()).max().unwrap_or(0);
+        let axis = RefinedAxis::new(&solution.geometry.axis, REFINEMENT, true, terms);
+        for group in &mut groups {
+            group.field = axis.prepare(std::mem::take(&mut group.field));
+        }
         let optics = &batch.optics;
         let scatterers = (0..optics.extinction.len())
             .map(|c| if optics.scattering[c] == Lanes::ZERO { Lanes::ZERO } else { optics.extinction[c] })
@@ -218,20 +223,13 @@ fn group(solution: &Solution, batch: &Batch, members: &[usize]) -> Group {
     // The shares are in the weights of the rays; those of the group's first constituent stand for its phase.
     let shares: Vec<Vec<Lanes>> =
         (0..optics.scattering.len()).map(|_| vec![Lanes::splat(1.0); geometry.levels.coarse.len()]).collect();
-    let refinement = Refinement::new(geometry.axis.len(), REFINEMENT, true);
-    let all = batch.state.field(&solution.basis, optics, &shares, &members[..1], &refinement);
-    let (basis, field) = needed_terms(&solution.basis, optics, members, all, geometry.levels.coarse.len());
+    let all = batch.state.field(&solution.basis, optics, &shares, &members[..1]);
+    let (basis, field) = needed_terms(&solution.basis, optics, members, all);
     Group { deeper, basis, field, first: members[0], scattering }
 }
 
 /// Keeps the degrees that the group's phase functions have: an isotropic group needs but one term.
-fn needed_terms(
-    basis: &Basis,
-    optics: &Optics,
-    members: &[usize],
-    all: Field,
-    levels: usize,
-) -> (Basis, Field) {
+fn needed_terms(basis: &Basis, optics: &Optics, members: &[usize], all: Field) -> (Basis, Field) {
     let needed =
         |l: usize| l == 0 || members.iter().any(|&c| optics.legendre[c][l].0.iter().any(|v| v.abs() > 1e-6));
     let mut degrees: Vec<usize> = basis.terms.iter().map(|t| t.0).filter(|&l| needed(l)).collect();
@@ -243,8 +241,8 @@ fn needed_terms(
     }
     let from = smaller.terms.iter().map(|&(l, m)| basis.index(l, m).expect("a term of the larger basis"));
     let from: Vec<usize> = from.collect();
-    let row = all.values.len() / levels / basis.len();
-    let rows = (0..levels).flat_map(|level| from.iter().map(move |&t| (level * basis.len() + t) * row));
-    let values = rows.flat_map(|at| all.values[at..][..row].iter().copied()).collect();
-    (smaller.clone(), Field { terms: smaller.len(), values })
+    let levels = all.values.chunks_exact(basis.len() * all.suns);
+    let values =
+        levels.flat_map(|level| from.iter().flat_map(|t| &level[t * all.suns..][..all.suns])).copied();
+    (smaller.clone(), Field { terms: smaller.len(), suns: all.suns, values: values.collect() })
 }

@@ -69,8 +69,8 @@ fn deviations(medium: &Medium) -> [f64; 3] {
     let columns = SunColumns::new(&shells, &levels, 16);
     // The axis reaches to the nadir: this light does not end with the sun's.
     let axis = SunAxis::new(12, -1.0);
-    let geometry = Geometry::new(levels, shells, axis, 12, true);
     let basis = Basis::new(&[0, 1, 2, 3, 4]);
+    let geometry = Geometry::new(levels, shells, axis, 12, true, basis.len());
     let optics = Optics::new(medium, 4);
     let sunlight = Sunlight::new(&columns, &geometry.levels, &optics.extinction);
     let operator = Operator::new(&geometry, &optics, &sunlight, &basis, AZIMUTHS);

@@ -4,22 +4,27 @@
 //! Sun positions come in chunks. Where a sample looks things up is found for a chunk at once (loops over plain
 //! arrays, which become vector code); then whole vectors of wavelengths are gathered from there.
 
-use super::azimuth::{CHUNK, PairChunk, Pairs, Places, SunAxis};
+use super::azimuth::{CHUNK, PairChunk, Pairs, Places};
 use super::moments::{Basis, MOST_DEGREE, MOST_TERMS};
 use super::rays::Sample;
+use super::refined::RefinedAxis;
 use super::sunlight::Sunlight;
 use crate::lanes::Lanes;
 
 /// Sources of multiply scattered light, `[level][term][sun node]`: (2l+1)/4π Σ f χ_l I_lm.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Field {
     pub terms: usize,
+    pub suns: usize,
     pub values: Vec<Lanes>,
 }
 
-/// Room for the kernels' intermediate values, reused from ray to ray: `[group][sun node][order]`.
+/// Room for the kernels' intermediate values, reused from ray to ray.
 #[derive(Default)]
 pub struct Scratch {
+    /// `[sun node of the field][order]`
+    coarse: Vec<Lanes>,
+    /// `[group][fine sun node][order]`
     collapsed: Vec<Vec<Lanes>>,
 }
 
@@ -48,7 +53,7 @@ pub fn multiple(
     samples: &[Sample],
     mu: f32,
     groups: &[FieldGroup],
-    axis: &SunAxis,
+    axis: &RefinedAxis,
     pairs: &Pairs,
     scratch: &mut Scratch,
     out: &mut [Lanes],
@@ -62,12 +67,12 @@ pub fn multiple(
             continue;
         }
         for (group, collapsed) in groups.iter().zip(&mut scratch.collapsed) {
-            collapsed.resize(axis.len() * compiled_modes(group.basis), Lanes::ZERO);
-            collapse(sample, group, axis.len(), collapsed);
+            collapsed.resize(axis.fine.len() * compiled_modes(group.basis), Lanes::ZERO);
+            collapse(sample, group, axis, &mut scratch.coarse, collapsed);
         }
         for (c, chunk) in pairs.chunks.iter().enumerate() {
             let sun = chunk.turned(sample.cos_turn, sample.sin_turn);
-            let places = axis.places(&sun);
+            let places = axis.fine.places(&sun);
             let azimuth = azimuth_factors(sample, mu, chunk, &sun, modes);
             for (g, (group, collapsed)) in groups.iter().zip(&scratch.collapsed).enumerate() {
                 let out = &mut out[g * count..][..count][c * CHUNK..];
@@ -113,50 +118,58 @@ fn add_field<const MODES: usize>(
     }
 }
 
-/// Sums the terms over degrees at a sample's own direction and place between levels: one value a sun node and
-/// order.
+/// Sums the terms over degrees at a sample's own direction and place between levels: one value a fine sun node
+/// and order.
 #[inline(always)]
-fn collapse(sample: &Sample, group: &FieldGroup, suns: usize, out: &mut [Lanes]) {
+fn collapse(
+    sample: &Sample,
+    group: &FieldGroup,
+    axis: &RefinedAxis,
+    coarse: &mut Vec<Lanes>,
+    out: &mut [Lanes],
+) {
     let mut p = [0.0; MOST_TERMS];
     group.basis.fill(f64::from(sample.mu), &mut p);
     let stride = compiled_modes(group.basis);
-    let terms = group.field.terms;
+    let Field { terms, suns, values } = group.field;
+    coarse.resize(suns * stride, Lanes::ZERO);
+    let sums = if axis.beforehand { &mut *out } else { &mut coarse[..suns * stride] };
+    sums.fill(Lanes::ZERO);
     for m in 0..stride {
         // Rows of the field and their factors.
-        let mut rows = [(0usize, 0.0f32); 2 * (MOST_DEGREE + 1)];
+        let mut parts = [(0usize, 0.0f32); 2 * (MOST_DEGREE + 1)];
         let mut count = 0;
         for (level, share) in [(sample.level, 1.0 - sample.place), (sample.level + 1, sample.place)] {
             for t in group.basis.of_order(m).filter(|_| share > 0.0) {
-                rows[count] = ((level as usize * terms + t) * suns, share * p[t]);
+                parts[count] = ((level as usize * terms + t) * suns, share * p[t]);
                 count += 1;
             }
         }
-        for out in out[m..].iter_mut().step_by(stride) {
-            *out = Lanes::ZERO;
-        }
-        let values = &group.field.values;
-        for rows in rows[..count].chunks(4) {
-            match rows.len() {
-                1 => add_rows::<1>(values, rows, suns, stride, &mut out[m..]),
-                2 => add_rows::<2>(values, rows, suns, stride, &mut out[m..]),
-                3 => add_rows::<3>(values, rows, suns, stride, &mut out[m..]),
-                _ => add_rows::<4>(values, rows, suns, stride, &mut out[m..]),
+        for parts in parts[..count].chunks(4) {
+            let sums = sums[m..].iter_mut().step_by(stride);
+            match parts.len() {
+                1 => add_rows::<1>(values, parts, *suns, sums),
+                2 => add_rows::<2>(values, parts, *suns, sums),
+                3 => add_rows::<3>(values, parts, *suns, sums),
+                _ => add_rows::<4>(values, parts, *suns, sums),
             }
         }
+    }
+    if !axis.beforehand {
+        axis.refine(&coarse[..suns * stride], stride, out);
     }
 }
 
 #[inline(always)]
-fn add_rows<const N: usize>(
+fn add_rows<'a, const N: usize>(
     values: &[Lanes],
-    rows: &[(usize, f32)],
+    parts: &[(usize, f32)],
     suns: usize,
-    stride: usize,
-    out: &mut [Lanes],
+    out: impl Iterator<Item = &'a mut Lanes>,
 ) {
-    let factors: [f32; N] = std::array::from_fn(|k| rows[k].1);
-    let rows: [&[Lanes]; N] = std::array::from_fn(|k| &values[rows[k].0..][..suns]);
-    for (node, out) in (0..suns).zip(out.iter_mut().step_by(stride)) {
+    let factors: [f32; N] = std::array::from_fn(|k| parts[k].1);
+    let rows: [&[Lanes]; N] = std::array::from_fn(|k| &values[parts[k].0..][..suns]);
+    for (node, out) in (0..suns).zip(out) {
         let mut sum = rows[0][node] * factors[0];
         for k in 1..N {
             sum += rows[k][node] * factors[k];

@@ -24,6 +24,7 @@ mod path;
 mod precondition;
 mod quadrature;
 mod rays;
+mod refined;
 pub mod solve;
 mod state;
 mod sunlight;

@@ -9,7 +9,8 @@ use super::optics::Optics;
 use super::path::Path;
 use super::quadrature::{Direction, directions};
 use super::rays::{Attenuation, Hit, Ray, Sample};
-use super::state::{Refinement, State};
+use super::refined::RefinedAxis;
+use super::state::State;
 use super::sunlight::Sunlight;
 use crate::lanes::Lanes;
 use rayon::prelude::*;
@@ -28,14 +29,20 @@ pub struct Geometry {
     pub levels: Levels,
     pub shells: Shells,
     pub axis: SunAxis,
-    /// The axis that fields are looked up on while orders are summed, and the way there.
-    pub fine_axis: SunAxis,
-    pub refinement: Refinement,
+    /// The axis that fields are looked up on while orders are summed.
+    pub refined: RefinedAxis,
     pub gathers: Vec<Gather>,
 }
 
 impl Geometry {
-    pub fn new(levels: Levels, shells: Shells, axis: SunAxis, zeniths: usize, cubic: bool) -> Self {
+    pub fn new(
+        levels: Levels,
+        shells: Shells,
+        axis: SunAxis,
+        zeniths: usize,
+        cubic: bool,
+        terms: usize,
+    ) -> Self {
         let (ground, top) = (shells.edges[0], shells.edges[shells.len()]);
         let gathers = levels
             .coarse
@@ -48,8 +55,7 @@ impl Geometry {
             })
             .collect();
         let factor = if cubic { REFINEMENT } else { 1 };
-        let refinement = Refinement::new(axis.len(), factor, cubic);
-        Geometry { levels, shells, fine_axis: axis.refined(factor), refinement, axis, gathers }
+        Geometry { levels, shells, refined: RefinedAxis::new(&axis, factor, cubic, terms), axis, gathers }
     }
 }
 
@@ -144,8 +150,8 @@ impl<'a> Operator<'a> {
     /// The next order of scattering: moments of the light that the field of `state` and the ground lit by it
     /// send out (Elek & Kmoch Eqs. 9–12 in one step).
     pub fn apply(&self, state: &State) -> State {
-        let field =
-            state.field(self.basis, self.optics, &self.shares, &self.scatterers, &self.geometry.refinement);
+        let field = state.field(self.basis, self.optics, &self.shares, &self.scatterers);
+        let field = self.geometry.refined.prepare(field);
         let ground_radiance = self.optics.albedo * FRAC_1_PI as f32;
         self.gather(
             &self.pairs,
@@ -153,7 +159,7 @@ impl<'a> Operator<'a> {
             |level, j, scratch, out| {
                 let (d, ray) = (&self.geometry.gathers[level].directions[j].0, &self.rays[level][j]);
                 let group = FieldGroup { field: &field, basis: self.basis, weights: &ray.weights };
-                let axis = &self.geometry.fine_axis;
+                let axis = &self.geometry.refined;
                 kernels::multiple(&ray.samples, d.mu as f32, &[group], axis, &self.pairs, scratch, out);
                 if let Some(hit) = &ray.hit {
                     let factor = hit.transmittance * ground_radiance;

@@ -133,8 +133,9 @@ impl Solution {
         let shells = Shells::new(medium, &levels);
         let columns = SunColumns::new(&shells, &levels, resolution.sunlight_nodes);
         let axis = SunAxis::new(resolution.sun_nodes, lowest_sun(medium));
-        let geometry = Geometry::new(levels, shells, axis, resolution.zeniths, is_thin(medium));
         let basis = Basis::new(&needed_degrees(medium, resolution.degree));
+        let thin = is_thin(medium);
+        let geometry = Geometry::new(levels, shells, axis, resolution.zeniths, thin, basis.len());
         let count = medium.wavelengths_nm.len();
         let mut batches = Vec::new();
         let mut report = Report { applications: 0, residual: Vec::new() };
