@@ -228,14 +228,13 @@ pub fn azimuth_factor(m: usize, x: f32, s2: f32, sine2: f32) -> f32 {
 pub struct SingleGroup<'a> {
     /// What sunlight at each sample adds to the radiance at the start, see [`super::rays::Path`].
     pub weights: Vec<Lanes>,
-    /// For groups with a forward peak: T τ towards the sun, see [`Sunlight::times_depth`], and the scattering
-    /// depth of the group from the start to each sample.
-    pub deeper: Option<(&'a [Lanes], Vec<Lanes>)>,
+    /// For groups with a forward peak: T τ towards the sun, see [`Sunlight::times_depth`].
+    pub deeper: Option<&'a [Lanes]>,
 }
 
 /// Adds to `once` (`[group][pair]`) the light of each group scattered once that arrives along the ray, without
 /// its phase function; and to `deeper`, for groups with a forward peak, the same light weighted by the
-/// scattering depths that it crosses to the eye and to the sun.
+/// scattering depth that it crossed from the sun.
 #[inline(always)]
 pub fn single(
     ray: &Ray,
@@ -282,11 +281,10 @@ pub fn single(
                 }
             }
             for (g, group) in groups.iter().enumerate().filter(|(_, g)| counts(g)) {
-                if let Some((depths, behind)) = &group.deeper {
-                    let factor = group.weights[k] * share;
+                if let Some(depths) = group.deeper {
                     let depths = sunlight.level_of(depths, level);
                     let out = &mut deeper[g * count..][..count];
-                    add_deeper(table, depths, factor, factor * behind[k], scratch, out);
+                    add_light(depths, [group.weights[k] * share], scratch, [out]);
                 }
             }
         }
@@ -316,22 +314,5 @@ fn add_light<const N: usize>(
         for g in 0..N {
             out[g][p] += light * factors[g];
         }
-    }
-}
-
-#[inline(always)]
-fn add_deeper(
-    table: &[Lanes],
-    depths: &[Lanes],
-    factor: Lanes,
-    behind: Lanes,
-    scratch: &Scratch,
-    out: &mut [Lanes],
-) {
-    let places = scratch.nodes.iter().zip(&scratch.low).zip(&scratch.high);
-    for (out, ((node, low), high)) in out.iter_mut().zip(places) {
-        let two = &table[*node as usize..][..2];
-        let more = &depths[*node as usize..][..2];
-        *out += (two[0] * *low + two[1] * *high) * behind + (more[0] * *low + more[1] * *high) * factor;
     }
 }
