@@ -240,7 +240,8 @@ pub fn kernel_for(
         4 | 5 => kernels::multiple::<5>(ray, mu, field, axis, basis, pairs, scratch, out),
         6 | 7 => kernels::multiple::<7>(ray, mu, field, axis, basis, pairs, scratch, out),
         8 | 9 => kernels::multiple::<9>(ray, mu, field, axis, basis, pairs, scratch, out),
-        _ => kernels::multiple::<11>(ray, mu, field, axis, basis, pairs, scratch, out),
+        10 | 11 => kernels::multiple::<11>(ray, mu, field, axis, basis, pairs, scratch, out),
+        _ => kernels::multiple::<13>(ray, mu, field, axis, basis, pairs, scratch, out),
     }
 }
 
