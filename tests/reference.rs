@@ -379,8 +379,7 @@ fn agrees_with_mitsuba() {
 
 /// Stopping at a coarse target does not stop before rare bright paths were met: over many seeds, what is stated
 /// and what the answers scatter agree. Scatter over 24 seeds is known to 15 %, and 32 replicates give the stated
-/// error to 13 % each, in squares more: 1.4 is three of those together; with the first 64 paths a replicate it was
-/// up to 1.3 times too small at more paths and more at fewer. No answer has fewer paths than the least.
+/// error to 13 %: 1.4 is two of both together. No answer has fewer paths than the least, where 0.1 % is reached.
 #[test]
 fn error_at_a_coarse_target_is_not_optimistic() {
     let medium = tyndall::preset::load("earth-paper", &[]).expect("a shipped preset").medium(&[440.0]);
