@@ -19,21 +19,25 @@ use rayon::prelude::*;
 /// Name of the layout and of its folder.
 pub const LAYOUT: &str = "compact";
 /// Texels of the single-scattering tables and of the multiple-scattering one: altitude, view, sun, azimuth.
-pub const SINGLE_SIZE: [usize; 4] = [20, 48, 44, 8];
-pub const MULTIPLE_SIZE: [usize; 4] = [16, 56, 40, 8];
+pub const SINGLE_SIZE: [usize; 4] = [28, 40, 38, 8];
+pub const MULTIPLE_SIZE: [usize; 4] = [18, 44, 36, 10];
 const DEPTH_SIZE: [usize; 2] = [64, 256];
 const IRRADIANCE_SIZE: usize = 128;
 /// Stored logarithms at or below this stand for darkness.
 pub const FLOOR: f64 = -24.0;
-/// Where this layout's sun axes are finest.
-const SUN: SunCurve = SunCurve::Rational { shift: 0.06, width: 0.25 };
+/// The sun axis of single scattering, closest where the planet's shadow crosses the air. Without its phase
+/// function it hardly depends on the azimuth.
+const SINGLE_SUN: SunCurve = SunCurve::Rational { shift: 0.08, width: 0.13 };
+/// The sun axis of the rest, closest where the sun is a little below the horizon (0.728² is half of 1 + 0.06). Its
+/// light depends on the angle to the sun, so that steps near the zenith are steps in s cos φ.
+const MULTIPLE_SUN: SunCurve = SunCurve::HalfAngle { centre: 0.728, width: 0.13 };
 
 /// The paper's view axis spends few texels near the zenith, where light varies with azimuth.
 const VIEW_POWER: f64 = 1.5;
 
-/// The mapping of this layout for a medium; none where a size is out of range.
-pub fn mapping(medium: &Medium, size: [usize; 4]) -> Option<Elek2010> {
-    Elek2010::new(medium.ground_radius, medium.top_radius, size).map(|m| m.with_curves(SUN, VIEW_POWER))
+fn mapping(medium: &Medium, size: [usize; 4], sun: SunCurve) -> Elek2010 {
+    let mapping = Elek2010::new(medium.ground_radius, medium.top_radius, size);
+    mapping.expect("sizes are checked with the arguments").with_curves(sun, VIEW_POWER)
 }
 
 /// Lists of constituents that share a phase function at every wavelength.
@@ -65,8 +69,8 @@ impl Default for Sizes {
 /// where there is light.
 pub fn tables(medium: &Medium, solution: &Solution, palette: &Palette, sizes: Sizes) -> (Vec<Baked>, usize) {
     let groups = groups(medium);
-    let single = mapping(medium, sizes.single).expect("sizes are checked with the arguments");
-    let multiple = mapping(medium, sizes.multiple).expect("sizes are checked with the arguments");
+    let single = mapping(medium, sizes.single, SINGLE_SUN);
+    let multiple = mapping(medium, sizes.multiple, MULTIPLE_SUN);
     let mut out = Vec::new();
     let singles = fill(solution, palette, &single, &groups, Wanted::Single);
     for (group, texels) in groups.iter().zip(singles) {

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 pub struct Settings {
     /// Paths at most, over all replicates.
     pub paths: u64,
-    /// Relative standard error at which to stop before.
+    /// Relative standard error at which to stop before, after a least number of paths.
     pub stderr: Option<f64>,
     /// Light of 1 … this many events; None: all.
     pub orders: Option<usize>,
@@ -42,6 +42,10 @@ pub struct Estimate {
 
 /// Paths of a replicate in the first round; each next round doubles what there is.
 const FIRST: u64 = 64;
+/// Paths of a replicate at least, before a target may end the sum. Much of the light comes from few paths: until
+/// some of them were met, the scatter of the replicates is too small a standard error, and stopping where it is
+/// small picks those cases.
+const LEAST: u64 = 1024;
 
 impl Tracer {
     /// Radiance at a point of view. The same settings give the same bits, whatever the number of threads.
@@ -66,7 +70,7 @@ impl Tracer {
             done = until;
             let estimate = summary(&sums, done);
             let reached = settings.stderr.is_some_and(|t| estimate.stderr <= t * estimate.radiance.abs());
-            if done == most || (reached && done >= 4 * FIRST) {
+            if done == most || (reached && done >= LEAST) {
                 return estimate;
             }
         }

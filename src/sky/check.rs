@@ -103,6 +103,9 @@ fn check_table(table: &Table, atlas: &Atlas) -> Result<(), String> {
         if let Some(v) = constant("shift").filter(|v| !(-1.0..=1.0).contains(v)) {
             return Err(format!("axes.{}.shift = {v}: must be between -1 and 1", axis.name));
         }
+        if let Some(v) = constant("centre").filter(|v| !(0.0..=1.0).contains(v)) {
+            return Err(format!("axes.{}.centre = {v}: must be between 0 and 1", axis.name));
+        }
     }
     Ok(())
 }

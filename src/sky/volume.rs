@@ -74,8 +74,10 @@ fn mapping(table: &Table, size: [usize; 4]) -> Result<Elek2010, String> {
     let shell = Elek2010::new(constant(0, "r_ground")?, constant(0, "r_top")?, size)
         .ok_or_else(|| format!("{}: sizes {size:?} or radii are out of range", table.name))?;
     let sun = table.axes.iter().position(|a| a.name == "sun");
-    let curve = match sun.map(|k| (constant(k, "shift"), constant(k, "width"))) {
-        Some((Ok(shift), Ok(width))) => SunCurve::Rational { shift, width },
+    let number = |name: &str| sun.and_then(|k| constant(k, name).ok());
+    let curve = match (number("shift"), number("centre"), number("width")) {
+        (Some(shift), _, Some(width)) => SunCurve::Rational { shift, width },
+        (_, Some(centre), Some(width)) => SunCurve::HalfAngle { centre, width },
         _ => SunCurve::Paper,
     };
     Ok(shell.with_curves(curve, constant(1, "view_power")?))

@@ -10,6 +10,7 @@
 //! horizon and distances keep their digits.
 
 use super::array::{Texel, texel};
+use super::sun_curve::SunCurve;
 
 /// The exponent of the sun axis over its whole length: 2.8 cos δ + 0.8 at cos δ = 1. A longer axis stretches
 /// the paper's nodes evenly; with 2.8 kept, the last step below the zenith would widen to half the day.
@@ -21,21 +22,6 @@ const PAPER_MU_S_MIN: f64 = -0.8 / 2.8;
 /// How far the axis reaches below the last light at the top: half a degree at the horizon, so that the dark
 /// edge lies inside the table for any shell.
 const MU_S_MARGIN: f64 = 0.01;
-
-/// How texels are spread over the cosine of the sun's zenith angle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SunCurve {
-    /// The paper's exponential W.
-    Paper,
-    /// x = u / (|u| + width) with u = mu_s + shift, even in x: closest where the sun is a little below the
-    /// horizon and light fades fastest, and still fine by day.
-    Rational { shift: f64, width: f64 },
-}
-
-fn rational(mu_s: f64, shift: f64, width: f64) -> f64 {
-    let u = mu_s + shift;
-    u / (u.abs() + width)
-}
 
 /// The mapping between (altitude, mu, mu_s, azimuth) and texels.
 #[derive(Clone, Debug, PartialEq)]
@@ -247,13 +233,15 @@ impl Elek2010 {
     /// its (1 − e^(−2.8 mu_s − 0.8)) / (1 − e^−3.6).
     #[inline]
     pub fn sun_coordinate(&self, mu_s: f64) -> Option<f64> {
-        if let SunCurve::Rational { shift, width } = self.curve {
-            let x = |mu: f64| rational(mu, shift, width);
-            let low = x(self.mu_s_min);
-            return (mu_s >= self.mu_s_min).then(|| (x(mu_s) - low) / (x(1.0) - low));
+        if mu_s < self.mu_s_min {
+            return None;
+        }
+        let x = |mu: f64| self.curve.quotient(mu);
+        if let (Some(at), Some(low), Some(high)) = (x(mu_s), x(self.mu_s_min), x(1.0)) {
+            return Some((at - low) / (high - low));
         }
         let above = self.sun_steepness * (mu_s - self.mu_s_min);
-        (mu_s >= self.mu_s_min).then(|| (1.0 - libm::exp(-above)) / SUN_RANGE)
+        Some((1.0 - libm::exp(-above)) / SUN_RANGE)
     }
 
     /// Cosine of the sun's zenith angle of texel `k`: mu_s_min for the first, 1 for the last.
@@ -262,10 +250,9 @@ impl Elek2010 {
             return 1.0;
         }
         let w = k as f64 / (self.size[2] - 1) as f64;
-        if let SunCurve::Rational { shift, width } = self.curve {
-            let low = rational(self.mu_s_min, shift, width);
-            let x = low + w * (rational(1.0, shift, width) - low);
-            return x * width / (1.0 - x.abs()) - shift;
+        let x = |mu: f64| self.curve.quotient(mu);
+        if let (Some(low), Some(high)) = (x(self.mu_s_min), x(1.0)) {
+            return self.curve.mu_s(low + w * (high - low)).expect("a quotient has an inverse");
         }
         self.mu_s_min - libm::log(1.0 - w * SUN_RANGE) / self.sun_steepness
     }
@@ -356,18 +343,13 @@ impl Elek2010 {
 
     fn sun_axis(&self) -> AxisFormula {
         let low = ("mu_s_min", self.mu_s_min);
-        let (coordinate, inverse, constants) = match self.curve {
-            SunCurve::Paper => (
+        let (coordinate, inverse, constants) = match self.curve.words() {
+            Some((coordinate, inverse, [a, b])) => (coordinate, inverse, vec![a, b, low]),
+            None => (
                 "W = (1 - exp(-a (mu_s - mu_s_min))) / (1 - exp(-3.6)), a = 3.6 / (1 - mu_s_min); the table is \
                     0 for mu_s < mu_s_min",
                 "mu_s = mu_s_min - ln(1 - W (1 - exp(-3.6))) / a",
                 vec![("a", self.sun_steepness), low],
-            ),
-            SunCurve::Rational { shift, width } => (
-                "x(mu_s) = u / (|u| + width), u = mu_s + shift; W = (x(mu_s) - x(mu_s_min)) / (x(1) - \
-                    x(mu_s_min)); the table is 0 for mu_s < mu_s_min",
-                "x = x(mu_s_min) + W (x(1) - x(mu_s_min)); mu_s = x width / (1 - |x|) - shift",
-                vec![("shift", shift), ("width", width), low],
             ),
         };
         AxisFormula { name: "sun", size: self.size[2], coordinate, inverse, constants }

@@ -2,6 +2,8 @@
 
 mod array;
 mod elek2010;
+mod sun_curve;
 
 pub use array::{Array, Element, Texel, texel};
-pub use elek2010::{AxisFormula, Elek2010, SunCurve};
+pub use elek2010::{AxisFormula, Elek2010};
+pub use sun_curve::SunCurve;

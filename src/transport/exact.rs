@@ -127,25 +127,18 @@ impl Solution {
         let mut scattered = Lanes::ZERO;
         let mut depth = Lanes::ZERO;
         let mut columns = vec![0.0; shells.constituents];
-        let mut behind = columns.clone();
         for (shell, t0, t1) in self.segments(&track, view, optics) {
             for (place, weight) in GAUSS {
                 let t = t0 + (t1 - t0) * place;
                 columns.fill(0.0);
                 shells.add_path(shell, track.b2, t0, t, &mut columns);
                 let through = (depth + depth_of(&columns, optics)) * -1.0;
-                for (all, part) in columns.iter_mut().zip(&behind) {
-                    *all += part;
-                }
-                let source = self.source(batch, view, &track, (shell, t), last, &phases, &columns);
+                let source = self.source(batch, view, &track, (shell, t), last, &phases);
                 scattered += through.exp() * source * (weight * (t1 - t0)) as f32;
             }
             columns.fill(0.0);
             shells.add_path(shell, track.b2, t0, t1, &mut columns);
             depth += depth_of(&columns, optics);
-            for (all, part) in behind.iter_mut().zip(&columns) {
-                *all += part;
-            }
         }
         let transmittance = (depth * -1.0).exp();
         let ground = if view.hits_ground {
@@ -185,22 +178,17 @@ impl Solution {
         (shell, t): (usize, f64),
         last: &[usize],
         phases: &[[Lanes; 3]],
-        columns: &[f64],
     ) -> Lanes {
         let r = (track.b2 + t * t).sqrt();
         let mu_s = track.mu_s(view, t);
-        let mut sunward = vec![0.0; columns.len()];
+        let mut sunward = vec![0.0; self.geometry.shells.constituents];
         let sun = self.to_sun(batch, r, mu_s, &mut sunward);
         let moments = self.moments(batch, r, mu_s);
         let factors = self.angular_factors(t / r, mu_s, view.nu);
         let mut sum = Lanes::ZERO;
         for (&c, [phase, second, third]) in last.iter().zip(phases) {
-            let (to_eye, to_sun) = (
-                batch.optics.scattering[c] * columns[c] as f32,
-                batch.optics.scattering[c] * sunward[c] as f32,
-            );
-            let squares = to_eye * to_eye + to_sun * to_sun;
-            let phase = *phase + (to_eye + to_sun) * *second * 0.5 + squares * *third * 0.25;
+            let to_sun = batch.optics.scattering[c] * sunward[c] as f32;
+            let phase = *phase + to_sun * (*second + to_sun * *third * 0.5);
             let scattering = batch.optics.scattering[c] * self.geometry.shells.density(shell, c, r) as f32;
             let mut often = Lanes::ZERO;
             for ((&(l, _), factor), moment) in self.basis.terms.iter().zip(&factors).zip(&moments) {

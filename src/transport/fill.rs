@@ -157,7 +157,7 @@ impl<'a> Painter<'a> {
             .iter()
             .map(|g| SingleGroup {
                 weights: attenuation.weights(path, &g.scattering),
-                deeper: g.deeper.as_ref().map(|d| (d.as_slice(), path.depths(&g.scattering))),
+                deeper: g.deeper.as_deref(),
             })
             .collect();
         out.deeper.clear();
@@ -196,9 +196,9 @@ impl<'a> Painter<'a> {
             let near = nearness(nu);
             for w in 0..WIDTH {
                 let (i, d) = (once[p][w], deeper[p][w]);
-                // The mean of τ_eye² + τ_sun² over a straight way is two thirds of (τ_eye + τ_sun)².
-                let squares = if i > 0.0 { d * d / i * (2.0 / 3.0) } else { 0.0 };
-                let more = 0.5 * second * c1[w] * d + 0.25 * third * c2[w] * squares;
+                // d / i is the mean depth towards the sun. Spread evenly, the mean of its square is 4/3 of that².
+                let squares = if i > 0.0 { d * d / i * (4.0 / 3.0) } else { 0.0 };
+                let more = second * c1[w] * d + 0.5 * third * c2[w] * squares;
                 multiple[p][w] += (1.0 - near) * more;
                 once[p][w] = i + if value[w] > 0.0 { near * more / value[w] } else { 0.0 };
             }

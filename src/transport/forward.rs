@@ -1,13 +1,15 @@
 //! What the low-degree field misses of a forward peak: light scattered several times by small angles.
 //!
-//! In small-angle scattering the path hardly turns. After its first scattering, the part of degree l of the
-//! light that has crossed a scattering optical depth τ of the same constituent grows like exp(χ_l τ)
-//! (Goudsmit & Saunderson 1940). The solver's field carries the degrees that it holds; the others, to the
-//! third order, are added to the phase function of single scattering:
-//!   p(ν) → p(ν) + ½ (τ_eye + τ_sun) c₁(ν) + ¼ (τ_eye² + τ_sun²) c₂(ν),
-//!   c_n(ν) = Σ_{l > degree} (2l+1)/4π χ_l^(n+1) P_l(ν).
-//! The further scatterings lie on the way to the eye or to the sun; on a straight way both give the same, so
-//! the mean of the two is right for forward and for backward scattering, where one turn is sharp.
+//! The last scattering of light is summed from moments of its radiance up to a degree. Beyond it lies what the
+//! peak itself has made of sunlight on its way: at a place below the scattering optical depth τ of the same
+//! constituent towards the sun, once scattered light is T τ times the phase function around the sun's direction,
+//! twice scattered light T τ²/2 times its convolution with itself, and so on, as long as the path hardly turns
+//! (Goudsmit & Saunderson 1940). The last scattering multiplies each degree by χ_l once more, so that to the
+//! third order the phase function of single scattering becomes
+//!   p(ν) → p(ν) + τ c₁(ν) + ½ τ² c₂(ν),   c_n(ν) = Σ_{l > degree} (2l+1)/4π χ_l^(n+1) P_l(ν).
+//! Small turns after a sharp one, on the way to the eye, need no such term: light that has turned sharply is
+//! smooth in direction, and the moments hold it. Where all turns are small, the way to the sun stands for the
+//! whole: on a straight line both count the same pairs of places.
 
 use crate::lanes::{Lanes, WIDTH};
 use crate::medium::PhaseFunction;

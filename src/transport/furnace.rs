@@ -2,13 +2,13 @@
 
 use super::azimuth::{Pairs, SunAxis, midpoint_azimuths};
 use super::column::Shells;
+use super::krylov::converge;
 use super::levels::Levels;
 use super::moments::Basis;
 use super::operator::{Geometry, Operator};
 use super::optics::Optics;
 use super::quadrature::gauss_legendre;
 use super::rays::Attenuation;
-use super::solve::converge;
 use super::state::State;
 use super::sunlight::{SunColumns, Sunlight};
 use crate::lanes::Lanes;

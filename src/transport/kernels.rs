@@ -43,6 +43,7 @@ fn compiled_modes(basis: &Basis) -> usize {
         4 | 5 => 5,
         6 | 7 => 7,
         8 | 9 => 9,
+        10 | 11 => 11,
         _ => MOST_DEGREE + 1,
     }
 }
@@ -84,6 +85,7 @@ pub fn multiple(
                     5 => add_field::<5>(collapsed, &places, &azimuth, weight, out),
                     7 => add_field::<7>(collapsed, &places, &azimuth, weight, out),
                     9 => add_field::<9>(collapsed, &places, &azimuth, weight, out),
+                    11 => add_field::<11>(collapsed, &places, &azimuth, weight, out),
                     _ => add_field::<{ MOST_DEGREE + 1 }>(collapsed, &places, &azimuth, weight, out),
                 }
             }
@@ -252,14 +254,13 @@ pub fn azimuth_factor(m: usize, x: f32, s2: f32, sine2: f32) -> f32 {
 pub struct SingleGroup<'a> {
     /// What sunlight at each sample adds to the radiance at the start, see [`super::rays::Attenuation`].
     pub weights: Vec<Lanes>,
-    /// For groups with a forward peak: T τ towards the sun, see [`Sunlight::times_depth`], and the scattering
-    /// depth of the group from the start to each sample.
-    pub deeper: Option<(&'a [Lanes], Vec<Lanes>)>,
+    /// For groups with a forward peak: T τ towards the sun, see [`Sunlight::times_depth`].
+    pub deeper: Option<&'a [Lanes]>,
 }
 
 /// Adds to `once` (`[group][pair]`) the light of each group scattered once that arrives along the ray, without
 /// its phase function; and to `deeper`, for groups with a forward peak, the same light weighted by the
-/// scattering depths that it crosses to the eye and to the sun.
+/// scattering depth that it crossed from the sun.
 #[inline(always)]
 pub fn single(
     samples: &[Sample],
@@ -271,19 +272,10 @@ pub fn single(
 ) {
     let count = pairs.len();
     let looks = looks(samples, groups);
-    let mut outputs = Vec::new();
-    for (group, out) in groups.iter().zip(once.chunks_exact_mut(count)) {
-        outputs
-            .push(Output { weights: looks.iter().map(|l| group.weights[l.sample] * l.share).collect(), out });
-    }
-    let mut sunward = Vec::new();
-    for (g, (group, out)) in groups.iter().zip(deeper.chunks_exact_mut(count)).enumerate() {
-        if let Some((depths, behind)) = &group.deeper {
-            let weights = looks.iter().zip(&outputs[g].weights).map(|(l, w)| *w * behind[l.sample]).collect();
-            sunward.push((*depths, g, outputs.len()));
-            outputs.push(Output { weights, out });
-        }
-    }
+    let weights = |g: &SingleGroup| looks.iter().map(|l| g.weights[l.sample] * l.share).collect::<Vec<_>>();
+    let mut outputs: Vec<Output> = (groups.iter().zip(once.chunks_exact_mut(count)))
+        .map(|(group, out)| Output { weights: weights(group), out })
+        .collect();
     for outputs in outputs.chunks_mut(4) {
         match outputs {
             [a] => add_light(&looks, sunlight, sunlight.all(), pairs, [a]),
@@ -293,10 +285,10 @@ pub fn single(
             _ => unreachable!("chunks of four"),
         }
     }
-    for (depths, from, to) in sunward {
-        let weights = std::mem::take(&mut outputs[from].weights);
-        let mut output = Output { weights, out: &mut *outputs[to].out };
-        add_light(&looks, sunlight, depths, pairs, [&mut output]);
+    for (group, out) in groups.iter().zip(deeper.chunks_exact_mut(count)) {
+        if let Some(depths) = group.deeper {
+            add_light(&looks, sunlight, depths, pairs, [&mut Output { weights: weights(group), out }]);
+        }
     }
 }
 

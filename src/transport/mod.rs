@@ -16,6 +16,7 @@ mod forward;
 #[cfg(test)]
 mod furnace;
 mod kernels;
+mod krylov;
 mod levels;
 mod moments;
 mod operator;

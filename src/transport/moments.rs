@@ -45,7 +45,7 @@ impl Step {
 }
 
 /// Largest degree that a basis may hold, and the number of its terms.
-pub const MOST_DEGREE: usize = 10;
+pub const MOST_DEGREE: usize = 12;
 pub const MOST_TERMS: usize = (MOST_DEGREE + 1) * (MOST_DEGREE + 2) / 2;
 
 impl Basis {

@@ -36,6 +36,23 @@ impl State {
         }
     }
 
+    /// Adds a multiple of another state, wavelength by wavelength.
+    pub fn add_times(&mut self, other: &State, factor: Lanes) {
+        for (a, b) in self.moments.iter_mut().zip(&other.moments) {
+            *a += *b * factor;
+        }
+        for (a, b) in self.ground.iter_mut().zip(&other.ground) {
+            *a += *b * factor;
+        }
+    }
+
+    /// Multiplies everything by a number for each wavelength.
+    pub fn scale_by(&mut self, factor: Lanes) {
+        for v in self.moments.iter_mut().chain(&mut self.ground) {
+            *v = *v * factor;
+        }
+    }
+
     /// Multiplies everything by a number.
     pub fn scale(&mut self, factor: f32) {
         for v in self.moments.iter_mut().chain(&mut self.ground) {
