@@ -39,7 +39,7 @@ impl SunCurve {
     }
 
     /// Coordinate, inverse and constants in words, for a manifest; none for the paper's curve.
-    pub(super) fn words(self) -> Option<(&'static str, &'static str, [(&'static str, f64); 2])> {
+    pub(super) fn words(self) -> Option<Words> {
         match self {
             SunCurve::Paper => None,
             SunCurve::Rational { shift, width } => Some((
@@ -57,6 +57,9 @@ impl SunCurve {
         }
     }
 }
+
+/// Coordinate, inverse and constants of a curve in words.
+pub(super) type Words = (&'static str, &'static str, [(&'static str, f64); 2]);
 
 /// Sine of half the zenith angle.
 #[inline]
