@@ -64,7 +64,7 @@ impl<'a> Painter<'a> {
         let mut groups: Vec<Group> =
             groups.iter().filter(|g| !g.is_empty()).map(|g| group(solution, batch, g)).collect();
         let terms = groups.iter().map(|g| g.basis.len()).max().unwrap_or(0);
-        let axis = RefinedAxis::new(&solution.geometry.axis, REFINEMENT, true, terms);
+        let axis = RefinedAxis::new(&solution.geometry.axis, REFINEMENT, terms);
         for group in &mut groups {
             group.field = axis.prepare(std::mem::take(&mut group.field));
         }
@@ -139,7 +139,7 @@ impl<'a> Painter<'a> {
     #[inline(always)]
     fn multiple(&self, path: &Path, attenuation: &Attenuation, mu: f32, pairs: &Pairs, out: &mut RayLight) {
         let samples = Sample::all(path, &self.solution.geometry.levels, true);
-        let weights = |g: &Group| attenuation.coarse_weights(path, &g.scattering);
+        let weights = |g: &Group| attenuation.field_weights(path, &g.scattering);
         let weights: Vec<Vec<Lanes>> = self.groups.iter().map(weights).collect();
         let groups: Vec<FieldGroup> = (self.groups.iter().zip(&weights))
             .map(|(g, weights)| FieldGroup { field: &g.field, basis: &g.basis, weights })
@@ -222,8 +222,8 @@ fn group(solution: &Solution, batch: &Batch, members: &[usize]) -> Group {
         .then(|| batch.sunlight.times_depth(&solution.columns, &scattering));
     // The shares are in the weights of the rays; those of the group's first constituent stand for its phase.
     let shares: Vec<Vec<Lanes>> =
-        (0..optics.scattering.len()).map(|_| vec![Lanes::splat(1.0); geometry.levels.coarse.len()]).collect();
-    let all = batch.state.field(&solution.basis, optics, &shares, &members[..1]);
+        (0..optics.scattering.len()).map(|_| vec![Lanes::splat(1.0); geometry.levels.field.len()]).collect();
+    let all = batch.state.field(&solution.basis, optics, &geometry.levels, &shares, &members[..1]);
     let (basis, field) = needed_terms(&solution.basis, optics, members, all);
     Group { deeper, basis, field, first: members[0], scattering }
 }

@@ -3,7 +3,7 @@
 use super::azimuth::{Pairs, SunAxis, midpoint_azimuths};
 use super::column::Shells;
 use super::krylov::converge;
-use super::levels::Levels;
+use super::levels::{LevelCounts, Levels};
 use super::moments::Basis;
 use super::operator::{Geometry, Operator};
 use super::optics::Optics;
@@ -64,13 +64,13 @@ fn from_space(operator: &Operator, azimuths: usize) -> State {
 /// Largest deviations from the furnace's answer: of M0 / 4π, of the other moments, of ground irradiance / π.
 fn deviations(medium: &Medium) -> [f64; 3] {
     const AZIMUTHS: usize = 5;
-    let levels = Levels::new(medium, 16, 2);
+    let levels = Levels::new(medium, LevelCounts { coarse: 16, refinement: 1, cuts: 2 });
     let shells = Shells::new(medium, &levels);
     let columns = SunColumns::new(&shells, &levels, 16);
     // The axis reaches to the nadir: this light does not end with the sun's.
     let axis = SunAxis::new(12, -1.0);
     let basis = Basis::new(&[0, 1, 2, 3, 4]);
-    let geometry = Geometry::new(levels, shells, axis, 12, true, basis.len());
+    let geometry = Geometry::new(levels, shells, axis, 12, basis.len());
     let optics = Optics::new(medium, 4);
     let sunlight = Sunlight::new(&columns, &geometry.levels, &optics.extinction);
     let operator = Operator::new(&geometry, &optics, &sunlight, &basis, AZIMUTHS);

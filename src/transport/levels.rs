@@ -1,18 +1,32 @@
 //! The radii at which the radiance field is held, and the finer ones at which rays are sampled.
 
+use super::refined::lagrange;
 use crate::medium::Medium;
 
-/// Radii from ground to top, m: a fine list, of which every `stride`-th belongs to the coarse one.
+/// Radii from ground to top, m, rising: three lists, each of which holds the next.
 #[derive(Clone, Debug)]
 pub struct Levels {
-    /// All sampling radii, rising from the ground to the top.
+    /// All sampling radii, at which sunlight is tabulated.
     pub fine: Vec<f64>,
+    /// Radii at which rays look up fields of light scattered more often.
+    pub field: Vec<f64>,
     /// Radii that hold the state of the solver.
     pub coarse: Vec<f64>,
-    /// For each fine radius, the coarse interval it lies in and its place there, 0 … 1.
-    pub place: Vec<(usize, f64)>,
-    /// For each coarse radius, its number in the fine list.
-    pub fine_index: Vec<usize>,
+    /// For each radius of the field, its number in the fine list.
+    pub field_index: Vec<usize>,
+    /// Intervals of the field for each of the state's.
+    refinement: usize,
+}
+
+/// Numbers of levels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LevelCounts {
+    /// That hold the state.
+    pub coarse: usize,
+    /// Intervals of the field between two of them.
+    pub refinement: usize,
+    /// Shells, at least, between two levels of the field.
+    pub cuts: usize,
 }
 
 /// Heights at which the spacing function is tabulated.
@@ -23,12 +37,13 @@ const SHELL_DEPTH: f64 = 0.25;
 const MOST_SHELLS: usize = 300;
 
 impl Levels {
-    /// `coarse` levels, each interval cut into `cuts` shells; further shells end at every kink of a profile.
-    /// Levels follow a blend of height, of each scatterer's column and of the largest optical depth, so that
-    /// a thin layer of haze and a thick lower atmosphere are both resolved.
-    pub fn new(medium: &Medium, coarse: usize, cuts: usize) -> Self {
+    /// Further shells end at every kink of a profile. Levels follow a blend of height, of each scatterer's column
+    /// and of the largest optical depth, so that a thin layer of haze and a thick lower atmosphere are both
+    /// resolved.
+    pub fn new(medium: &Medium, counts: LevelCounts) -> Self {
         let cumulative = spacing(medium);
-        let intervals = (coarse.max(2) - 1) * cuts.max(1);
+        let (cuts, refinement) = (counts.cuts.max(1), counts.refinement.max(1));
+        let intervals = (counts.coarse.max(2) - 1) * refinement * cuts;
         let mut fine: Vec<f64> = (0..=intervals)
             .map(|k| {
                 medium.ground_radius + altitude_at(&cumulative, medium.height(), k as f64 / intervals as f64)
@@ -36,11 +51,24 @@ impl Levels {
             .collect();
         fine[0] = medium.ground_radius;
         fine[intervals] = medium.top_radius;
-        let coarse: Vec<f64> = fine.iter().copied().step_by(cuts.max(1)).collect();
+        let field: Vec<f64> = fine.iter().copied().step_by(cuts).collect();
+        let coarse: Vec<f64> = field.iter().copied().step_by(refinement).collect();
         insert_kinks(&mut fine, medium);
-        let fine_index = coarse.iter().map(|c| fine.partition_point(|f| f < c)).collect();
-        let place = fine.iter().map(|&r| locate(&coarse, r)).collect();
-        Levels { fine, coarse, place, fine_index }
+        let field_index = field.iter().map(|c| fine.partition_point(|f| f < c)).collect();
+        Levels { fine, field, coarse, field_index, refinement }
+    }
+
+    /// The state's levels, as the first one and weights, that a level of the field lies between: cubic in the
+    /// levels' number, in which the state is smoother than in height.
+    pub fn between(&self, level: usize) -> (usize, Vec<f32>) {
+        let (below, part) = (level / self.refinement, level % self.refinement);
+        if part == 0 {
+            return (below, vec![1.0]);
+        }
+        let first = below.saturating_sub(1);
+        let last = (below + 2).min(self.coarse.len() - 1);
+        let place = part as f64 / self.refinement as f64;
+        (first, lagrange(below - first, last - below, place))
     }
 }
 

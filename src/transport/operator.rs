@@ -35,14 +35,7 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    pub fn new(
-        levels: Levels,
-        shells: Shells,
-        axis: SunAxis,
-        zeniths: usize,
-        cubic: bool,
-        terms: usize,
-    ) -> Self {
+    pub fn new(levels: Levels, shells: Shells, axis: SunAxis, zeniths: usize, terms: usize) -> Self {
         let (ground, top) = (shells.edges[0], shells.edges[shells.len()]);
         let gathers = levels
             .coarse
@@ -54,8 +47,7 @@ impl Geometry {
                     .collect(),
             })
             .collect();
-        let factor = if cubic { REFINEMENT } else { 1 };
-        Geometry { levels, shells, refined: RefinedAxis::new(&axis, factor, cubic, terms), axis, gathers }
+        Geometry { levels, shells, refined: RefinedAxis::new(&axis, REFINEMENT, terms), axis, gathers }
     }
 }
 
@@ -65,7 +57,7 @@ pub struct Operator<'a> {
     pub optics: &'a Optics,
     pub sunlight: &'a Sunlight,
     pub basis: &'a Basis,
-    /// `[constituent][coarse level]`
+    /// `[constituent][level of the field]`
     pub shares: Vec<Vec<Lanes>>,
     /// All constituents that scatter.
     pub scatterers: Vec<usize>,
@@ -85,7 +77,7 @@ impl<'a> Operator<'a> {
         let levels = &geometry.levels;
         let constituents = 0..optics.extinction.len();
         let shares =
-            constituents.clone().map(|c| optics.shares(&geometry.shells, &levels.coarse, c)).collect();
+            constituents.clone().map(|c| optics.shares(&geometry.shells, &levels.field, c)).collect();
         let scatterers = constituents.filter(|&c| optics.scattering[c] != Lanes::ZERO).collect();
         let rays = geometry
             .gathers
@@ -150,7 +142,8 @@ impl<'a> Operator<'a> {
     /// The next order of scattering: moments of the light that the field of `state` and the ground lit by it
     /// send out (Elek & Kmoch Eqs. 9–12 in one step).
     pub fn apply(&self, state: &State) -> State {
-        let field = state.field(self.basis, self.optics, &self.shares, &self.scatterers);
+        let levels = &self.geometry.levels;
+        let field = state.field(self.basis, self.optics, levels, &self.shares, &self.scatterers);
         let field = self.geometry.refined.prepare(field);
         let ground_radiance = self.optics.albedo * FRAC_1_PI as f32;
         self.gather(

@@ -15,13 +15,13 @@ pub struct Stop {
     pub r: f64,
     /// Fine level below and place between it and the next.
     pub fine: (usize, f64),
-    /// True where the coarse ray has a sample too: at coarse levels, ends, turning points and arc cuts.
-    coarse: bool,
+    /// True where fields are looked up: at their levels, ends, turning points and arc cuts.
+    field: bool,
 }
 
-/// Where a segment lies: after which coarse stop, and the places of its ends between that and the next one.
+/// Where a segment lies: after which stop of the field, and the places of its ends between that and the next one.
 #[derive(Clone, Copy, Debug)]
-pub struct CoarsePlace {
+pub struct FieldPlace {
     pub from: usize,
     pub near: f32,
     pub far: f32,
@@ -58,11 +58,11 @@ impl Path {
         path
     }
 
-    fn push_stop(&mut self, r: f64, along: f64, shells: &Shells, levels: &Levels, coarse: bool) {
+    fn push_stop(&mut self, r: f64, along: f64, shells: &Shells, levels: &Levels, field: bool) {
         let fine = locate(&shells.edges, r);
-        let on_coarse = (fine.1 == 0.0 && levels.fine_index.binary_search(&fine.0).is_ok())
-            || (fine.1 == 1.0 && levels.fine_index.binary_search(&(fine.0 + 1)).is_ok());
-        self.stops.push(Stop { along, r, fine, coarse: coarse || on_coarse });
+        let on_field = (fine.1 == 0.0 && levels.field_index.binary_search(&fine.0).is_ok())
+            || (fine.1 == 1.0 && levels.field_index.binary_search(&(fine.0 + 1)).is_ok());
+        self.stops.push(Stop { along, r, fine, field: field || on_field });
     }
 
     /// Down through the shells to the ground or to the point nearest the centre.
@@ -110,7 +110,7 @@ impl Path {
         shell: usize,
         r: f64,
         along: f64,
-        coarse: bool,
+        field: bool,
     ) {
         let from = self.last();
         let arc = self.b2.sqrt() * (along - from.along) / (r * from.r);
@@ -122,7 +122,7 @@ impl Path {
             let at = self.columns.len();
             self.columns.resize(at + self.constituents, 0.0);
             shells.add_path(shell, self.b2, self.last().along, next, &mut self.columns[at..]);
-            self.push_stop(radius, next, shells, levels, coarse || k < parts);
+            self.push_stop(radius, next, shells, levels, field || k < parts);
         }
     }
 
@@ -151,21 +151,21 @@ impl Path {
         out
     }
 
-    /// True where the coarse ray has a sample too.
+    /// True where fields are looked up.
     #[inline(always)]
-    pub fn is_coarse(&self, k: usize) -> bool {
-        self.stops[k].coarse || k + 1 == self.stops.len()
+    pub fn samples_field(&self, k: usize) -> bool {
+        self.stops[k].field || k + 1 == self.stops.len()
     }
 
-    /// Where each segment lies between the coarse stops.
-    pub fn coarse_places(&self) -> Vec<CoarsePlace> {
-        let coarse: Vec<usize> = (0..self.stops.len()).filter(|&k| self.is_coarse(k)).collect();
+    /// Where each segment lies between the stops where fields are looked up.
+    pub fn field_places(&self) -> Vec<FieldPlace> {
+        let stops: Vec<usize> = (0..self.stops.len()).filter(|&k| self.samples_field(k)).collect();
         let mut places = Vec::with_capacity(self.stops.len());
-        for (from, ends) in coarse.windows(2).enumerate() {
+        for (from, ends) in stops.windows(2).enumerate() {
             let mut near = 0.0;
             for k in ends[0]..ends[1] {
                 let far = self.place_between(k + 1, ends[0], ends[1]);
-                places.push(CoarsePlace { from, near, far });
+                places.push(FieldPlace { from, near, far });
                 near = far;
             }
         }

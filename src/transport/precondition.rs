@@ -33,7 +33,8 @@ impl Preconditioner {
     /// I − A, row by row: what the sources at every level and the ground send to one level's moments.
     fn assemble(&mut self, operator: &Operator) {
         let (size, count) = (self.size, self.terms.len());
-        let sources: Vec<Vec<Lanes>> = (0..self.levels)
+        let levels = &operator.geometry.levels;
+        let sources: Vec<Vec<Lanes>> = (0..levels.field.len())
             .map(|n| {
                 source_factors(operator.basis, operator.optics, &operator.shares, &operator.scatterers, n)
             })
@@ -49,8 +50,12 @@ impl Preconditioner {
                     let p = operator.basis.polynomials(f64::from(s.mu));
                     for (n, share) in [(s.level as usize, 1.0 - s.place), (s.level as usize + 1, s.place)] {
                         if share > 0.0 {
-                            for (k, &t) in self.terms.iter().enumerate() {
-                                row[n * count + k] += *weight * sources[n][t] * (share * p[t] as f32);
+                            let (first, between) = levels.between(n);
+                            for (level, part) in (first..).zip(between) {
+                                for (k, &t) in self.terms.iter().enumerate() {
+                                    row[level * count + k] +=
+                                        *weight * sources[n][t] * (share * part * p[t] as f32);
+                                }
                             }
                         }
                     }

@@ -7,7 +7,7 @@ use crate::lanes::{Lanes, WIDTH};
 /// A sampling point of a ray, as the kernels see it.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
-    /// Level below (coarse or fine, as the ray was built) and place between it and the next.
+    /// Level below (of fields or of sunlight, as the ray was built) and place between it and the next.
     pub level: u32,
     pub place: f32,
     pub cos_turn: f32,
@@ -33,7 +33,7 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// Samples at the coarse stops, between which the source function is linear in optical depth.
+    /// Samples where fields are looked up, between which the source function is linear in optical depth.
     #[inline(always)]
     pub fn new(path: &Path, levels: &Levels, extinction: &[Lanes]) -> Self {
         let mut samples: Vec<Sample> = Vec::with_capacity(path.stops.len());
@@ -43,7 +43,7 @@ impl Ray {
             if k > 0 {
                 depth += sum(path.segment(k - 1), extinction);
             }
-            if !path.is_coarse(k) {
+            if !path.samples_field(k) {
                 continue;
             }
             let (near, far, through) = segment_weights(depth);
@@ -68,9 +68,9 @@ impl Hit {
 }
 
 impl Sample {
-    fn at(path: &Path, levels: &Levels, stop: &Stop, coarse: bool) -> Self {
+    fn at(path: &Path, levels: &Levels, stop: &Stop, field: bool) -> Self {
         let (cos, sin) = path.turn(stop);
-        let (level, place) = if coarse { locate(&levels.coarse, stop.r) } else { stop.fine };
+        let (level, place) = if field { locate(&levels.field, stop.r) } else { stop.fine };
         Sample {
             level: level as u32,
             place: place as f32,
@@ -80,10 +80,10 @@ impl Sample {
         }
     }
 
-    /// A path's samples: all of its stops on fine levels, or the coarse ones on coarse levels.
-    pub fn all(path: &Path, levels: &Levels, coarse: bool) -> Vec<Self> {
-        let used = (0..path.stops.len()).filter(|&k| !coarse || path.is_coarse(k));
-        used.map(|k| Sample::at(path, levels, &path.stops[k], coarse)).collect()
+    /// A path's samples: all of its stops on fine levels, or those where fields are looked up on theirs.
+    pub fn all(path: &Path, levels: &Levels, field: bool) -> Vec<Self> {
+        let used = (0..path.stops.len()).filter(|&k| !field || path.samples_field(k));
+        used.map(|k| Sample::at(path, levels, &path.stops[k], field)).collect()
     }
 }
 
@@ -129,11 +129,11 @@ impl Attenuation {
         weights
     }
 
-    /// The same at the coarse stops only, out of a field that is linear in radius between them. What is
+    /// The same where a field is looked up, which is linear in radius between these stops. What is
     /// scattered between two fine stops is exact, however fast its share in the extinction changes there.
     #[inline(always)]
-    pub fn coarse_weights(&self, path: &Path, scattering: &[Lanes]) -> Vec<Lanes> {
-        let places = path.coarse_places();
+    pub fn field_weights(&self, path: &Path, scattering: &[Lanes]) -> Vec<Lanes> {
+        let places = path.field_places();
         let mut weights = vec![Lanes::ZERO; places.last().map_or(1, |p| p.from + 2)];
         for (k, place) in places.into_iter().enumerate() {
             let scattered = sum(path.segment(k), scattering);

@@ -2,6 +2,7 @@
 //! irradiance of the ground at each sun node.
 
 use super::kernels::Field;
+use super::levels::Levels;
 use super::moments::Basis;
 use super::optics::Optics;
 use crate::lanes::Lanes;
@@ -60,14 +61,29 @@ impl State {
         }
     }
 
-    /// The field that this state makes the constituents in `group` scatter.
-    /// `shares[constituent][level]`: scattering as a share of extinction at the state's levels.
-    pub fn field(&self, basis: &Basis, optics: &Optics, shares: &[Vec<Lanes>], group: &[usize]) -> Field {
+    /// The field that this state makes the constituents in `group` scatter, at the levels of fields: cubic between
+    /// those of the state. `shares[constituent][level of the field]`: scattering as a share of extinction.
+    pub fn field(
+        &self,
+        basis: &Basis,
+        optics: &Optics,
+        levels: &Levels,
+        shares: &[Vec<Lanes>],
+        group: &[usize],
+    ) -> Field {
         let stride = self.suns * self.terms;
-        let mut values = Vec::with_capacity(self.moments.len());
-        for (level, from) in self.moments.chunks_exact(stride).enumerate() {
+        let mut values = Vec::with_capacity(levels.field.len() * stride);
+        let mut sums = vec![Lanes::ZERO; stride];
+        for level in 0..levels.field.len() {
+            let (first, weights) = levels.between(level);
+            sums.fill(Lanes::ZERO);
+            for (weight, from) in weights.iter().zip(self.moments[first * stride..].chunks_exact(stride)) {
+                for (sum, moment) in sums.iter_mut().zip(from) {
+                    *sum += *moment * *weight;
+                }
+            }
             for (t, factor) in source_factors(basis, optics, shares, group, level).into_iter().enumerate() {
-                values.extend(from[t..].iter().step_by(self.terms).map(|m| *m * factor));
+                values.extend(sums[t..].iter().step_by(self.terms).map(|m| *m * factor));
             }
         }
         Field { terms: self.terms, suns: self.suns, values }

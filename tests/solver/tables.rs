@@ -53,7 +53,8 @@ fn compact_is_close_to_the_truth(name: &str) {
     let Baked { sky, quality } = baked(name);
     let tyndall::sky::Channels::Wavelengths(nm) = sky.channels() else { panic!("compact holds wavelengths") };
     let medium = preset::load(name, &[]).expect("a shipped preset").medium(&nm);
-    let finer = Resolution { levels: 44, cuts: 6, first_azimuths: 16, degree: 10, ..Resolution::TABLES };
+    let finer =
+        Resolution { levels: Resolution::EXACT.levels, first_azimuths: 16, degree: 10, ..Resolution::TABLES };
     let truth = Solution::new(&medium, &finer, Orders::Converged { tolerance: 1e-4 });
     let all: Vec<usize> = (0..medium.constituents.len()).collect();
     let mut failures = Vec::new();

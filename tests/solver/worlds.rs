@@ -3,7 +3,7 @@
 use tyndall::medium::{Constituent, DensityProfile, Medium, PhaseFunction, Role};
 use tyndall::points::Point;
 use tyndall::transport::exact::Radiance;
-use tyndall::transport::solve::{Orders, Resolution, Solution};
+use tyndall::transport::solve::{LevelCounts, Orders, Resolution, Solution};
 use tyndall::transport::view::View;
 
 pub const RAYLEIGH: PhaseFunction = PhaseFunction::Rayleigh { king_factor: 1.0 };
@@ -11,8 +11,7 @@ pub const CONVERGED: Orders = Orders::Converged { tolerance: 1e-4 };
 
 /// Enough for a per mille by day, and a fifth of the work of the tables' resolution.
 pub const COARSE: Resolution = Resolution {
-    levels: 20,
-    cuts: 2,
+    levels: LevelCounts { coarse: 20, refinement: 1, cuts: 2 },
     zeniths: 12,
     first_azimuths: 8,
     azimuths: 6,
