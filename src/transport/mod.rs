@@ -23,6 +23,7 @@ mod optics;
 mod precondition;
 mod quadrature;
 mod rays;
+pub mod slab;
 pub mod solve;
 mod state;
 mod sunlight;
