@@ -31,8 +31,14 @@ const WATERS: &[(&str, &str)] = &[
 /// Name and CSV text of every shipped spectrum.
 const SPECTRA: &[(&str, &str)] = &[
     ("ozone-serdyuchenko-233k", include_str!("../../presets/spectra/ozone-serdyuchenko-233k.csv")),
-    ("phytoplankton-bricaud1998-exponent", include_str!("../../presets/spectra/phytoplankton-bricaud1998-exponent.csv")),
-    ("phytoplankton-bricaud1998-factor", include_str!("../../presets/spectra/phytoplankton-bricaud1998-factor.csv")),
+    (
+        "phytoplankton-bricaud1998-exponent",
+        include_str!("../../presets/spectra/phytoplankton-bricaud1998-exponent.csv"),
+    ),
+    (
+        "phytoplankton-bricaud1998-factor",
+        include_str!("../../presets/spectra/phytoplankton-bricaud1998-factor.csv"),
+    ),
     ("seabed-brown-algae", include_str!("../../presets/spectra/seabed-brown-algae.csv")),
     ("seabed-coral-sand", include_str!("../../presets/spectra/seabed-coral-sand.csv")),
     ("seabed-green-algae", include_str!("../../presets/spectra/seabed-green-algae.csv")),
@@ -40,9 +46,15 @@ const SPECTRA: &[(&str, &str)] = &[
     ("seabed-sand", include_str!("../../presets/spectra/seabed-sand.csv")),
     ("seawater-absorption-wopp", include_str!("../../presets/spectra/seawater-absorption-wopp.csv")),
     ("seawater-refractive-index", include_str!("../../presets/spectra/seawater-refractive-index.csv")),
-    ("seawater-scattering-zhang2009", include_str!("../../presets/spectra/seawater-scattering-zhang2009.csv")),
+    (
+        "seawater-scattering-zhang2009",
+        include_str!("../../presets/spectra/seawater-scattering-zhang2009.csv"),
+    ),
     ("sun-tsis1-hsrs", include_str!("../../presets/spectra/sun-tsis1-hsrs.csv")),
-    ("water-absorption-buiteveld1994", include_str!("../../presets/spectra/water-absorption-buiteveld1994.csv")),
+    (
+        "water-absorption-buiteveld1994",
+        include_str!("../../presets/spectra/water-absorption-buiteveld1994.csv"),
+    ),
     ("water-refractive-index", include_str!("../../presets/spectra/water-refractive-index.csv")),
     ("water-scattering-zhang2009", include_str!("../../presets/spectra/water-scattering-zhang2009.csv")),
 ];

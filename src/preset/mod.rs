@@ -26,8 +26,8 @@ pub use coefficient::Coefficient;
 pub use library::{shipped, shipped_names, shipped_water_names, shipped_waters};
 pub use phase::{KingFactor, PhaseLaw, Stated};
 pub use planet::{Optics, Planet, Star, Substance};
-pub use water::{Water, WaterLaw, WaterSubstance};
 pub use rayleigh::{AIR_NUMBER_DENSITY, air_cross_section, air_king_factor, air_refractivity};
+pub use water::{Water, WaterLaw, WaterSubstance};
 
 use crate::error::{Error, Result};
 use raw::Raw;

@@ -12,11 +12,8 @@ use super::water::{Water, WaterLaw, WaterSubstance};
 use crate::error::Result;
 use crate::spectrum::Spectrum;
 
-const INDEX: Quantity = Quantity {
-    column: "refractive_index",
-    bounds: "between 1 and 2.5",
-    holds: |v| (1.0..=2.5).contains(&v),
-};
+const INDEX: Quantity =
+    Quantity { column: "refractive_index", bounds: "between 1 and 2.5", holds: |v| (1.0..=2.5).contains(&v) };
 const PER_M: Quantity = Quantity { column: "per_m", bounds: "0 or more", holds: |v| v >= 0.0 };
 const EXPONENT: Quantity =
     Quantity { column: "exponent", bounds: "between 0 and 2", holds: |v| (0.0..=2.0).contains(&v) };
@@ -26,7 +23,15 @@ pub const MARK: &str = "pure_water";
 
 /// The whole water.
 pub fn water(raw: &Raw) -> Result<Water> {
-    raw.only(&["name", "description", "refractive_index", "largest_depth_m", MARK, "constituents", "seabed"])?;
+    raw.only(&[
+        "name",
+        "description",
+        "refractive_index",
+        "largest_depth_m",
+        MARK,
+        "constituents",
+        "seabed",
+    ])?;
     let refractive_index = spectrum(&raw.need("refractive_index")?, INDEX)?;
     let bed = raw.need("seabed")?;
     bed.only(&["albedo"])?;

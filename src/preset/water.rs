@@ -106,7 +106,10 @@ impl Water {
     pub fn check(&self) -> std::result::Result<(), String> {
         let medium = self.medium(&crate::spectrum::grid(9));
         if !(self.largest_depth > 0.0 && self.largest_depth <= MOST_DEPTH) {
-            return Err(format!("largest depth {} m: must be over 0 and at most {MOST_DEPTH}", self.largest_depth));
+            return Err(format!(
+                "largest depth {} m: must be over 0 and at most {MOST_DEPTH}",
+                self.largest_depth
+            ));
         }
         if medium.refractive_index.iter().any(|n| !(1.0..=2.5).contains(n)) {
             return Err("its refractive index must lie between 1 and 2.5".into());
@@ -120,7 +123,9 @@ impl Water {
             for part in parts {
                 if !(0.0..=MOST_EXTINCTION).contains(&part) {
                     let nm = medium.wavelengths_nm[w];
-                    return Err(format!("a coefficient of {part} 1/m at {nm} nm: must be 0 to {MOST_EXTINCTION}"));
+                    return Err(format!(
+                        "a coefficient of {part} 1/m at {nm} nm: must be 0 to {MOST_EXTINCTION}"
+                    ));
                 }
                 sum += part;
             }

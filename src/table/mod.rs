@@ -2,6 +2,8 @@
 
 mod array;
 mod elek2010;
+mod water;
 
 pub use array::{Array, Element, Texel, texel};
 pub use elek2010::{AxisFormula, Elek2010, SunCurve};
+pub use water::{EvenCosine, WaterAxes};

@@ -15,6 +15,7 @@
 
 mod field;
 mod fresnel;
+mod leaving;
 mod matrix;
 mod modes;
 mod streams;
@@ -22,6 +23,7 @@ mod surface;
 
 pub use field::{Beam, Field, Layer, Pair, View, seabed_radiance};
 pub use fresnel::{fresnel, lazanyi_szirmay_kalos, refract};
+pub use leaving::{Angles, Light, WaterOrders, leaving};
 pub use modes::Slab;
 pub use streams::phase_mean;
 pub use surface::Surface;

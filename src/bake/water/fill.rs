@@ -1,0 +1,161 @@
+//! Texels of one water's tables.
+
+use super::shared::{baked, channels_of};
+use super::{LAYOUT, Waters};
+use crate::bake::tables::{Baked, Channel};
+use crate::medium::WaterMedium;
+use crate::preset::Water;
+use crate::table::{EvenCosine, WaterAxes};
+use crate::transport::slab::{Angles, Layer, Slab};
+use rayon::prelude::*;
+
+/// Texels of depth of tables without a sun axis, which cost little.
+const DEPTHS: usize = 128;
+/// Depth is D_max x^3: the second of 32 texels of a sea of 100 m is 3 mm deep, the last step 10 m.
+const DEPTH_POWER: f64 = 3.0;
+/// Cosines in the water are kept off 0, where no ray gets anywhere (n = 1 only).
+pub(super) const LEAST_COSINE: f64 = 1e-4;
+
+/// The sun axis of water: above the horizon only.
+pub(super) const SUN: EvenCosine = EvenCosine { name: "sun", least: 0.0 };
+
+/// The depth and view axes of a water.
+pub(super) fn axes(water: &Water, media: &WaterMedium) -> WaterAxes {
+    let n = media.refractive_index.iter().sum::<f64>() / media.refractive_index.len() as f64;
+    WaterAxes { largest_depth: water.largest_depth, depth_power: DEPTH_POWER, n }
+}
+
+/// Values at one wavelength and depth.
+#[derive(Default)]
+struct Column {
+    /// `[sun][view]`
+    water: Vec<f64>,
+    /// `[view]`
+    sky: Vec<f64>,
+    seabed: Vec<f64>,
+    /// `[sun]`
+    seabed_sun: Vec<f64>,
+    /// Irradiance of the bed by the sky, and by itself.
+    seabed_depth: [f64; 2],
+}
+
+/// W, S, U, W_b, and S_b with r: see the module's formula.
+pub(super) fn tables(water: &Water, media: &WaterMedium, slabs: &[Slab], waters: &Waters) -> Vec<Baked> {
+    let axes = axes(water, media);
+    let [depths, views, suns] = waters.size;
+    let inside = |slab: &Slab, mu: f64| slab.surface.cosine_in_water(mu).max(LEAST_COSINE);
+    let angles: Vec<Angles> = slabs
+        .par_iter()
+        .enumerate()
+        .map(|(w, slab)| {
+            let view: Vec<f64> = (0..views).map(|j| inside(slab, axes.mu(j, views))).collect();
+            let sun: Vec<f64> = (0..suns).map(|k| inside(slab, SUN.at(k, suns))).collect();
+            Angles::new(media, w, slab, &view, &sun, waters.orders, false)
+        })
+        .collect();
+    let columns = |count: usize, whole: bool| -> Vec<Vec<Column>> {
+        (0..slabs.len() * count)
+            .into_par_iter()
+            .map(|k| {
+                let (w, depth) = (k / count, axes.depth(k % count, count));
+                column(&Layer::new(&slabs[w], depth), &angles[w], whole)
+            })
+            .collect::<Vec<_>>()
+            .into_iter()
+            .fold(Vec::new(), |mut rows: Vec<Vec<Column>>, column| {
+                match rows.last_mut() {
+                    Some(row) if row.len() < count => row.push(column),
+                    _ => rows.push(vec![column]),
+                }
+                rows
+            })
+    };
+    let (coarse, fine) = (columns(depths, true), columns(DEPTHS, false));
+    let (depth, view) = (axes.depth_axis(depths), axes.view_axis(views));
+    let (deep, sun) = (axes.depth_axis(DEPTHS), SUN.axis(suns));
+    let name = |what: &str| format!("{}{what}", water.name);
+    let of = |what: &str, unit: &str| -> Vec<Channel> { channels_of(&media.wavelengths_nm, what, unit) };
+    let rows = crate::export::manifest::Axis {
+        name: "row".into(),
+        size: 2,
+        formula: "0: by a sky of unit irradiance; 1: by the bed itself, of unit radiance".into(),
+        constants: Default::default(),
+        unit: "1".into(),
+    };
+    vec![
+        baked(
+            LAYOUT,
+            name(""),
+            vec![plain(&depth), plain(&view), plain(&sun)],
+            of(
+                "radiance below the surface over n^2, of water over a black bed, per irradiance that the sun brings in",
+                "1/sr",
+            ),
+            |[i, j, k], w| coarse[w][i].water[k * views + j],
+        ),
+        baked(
+            LAYOUT,
+            name("_sky"),
+            vec![plain(&deep), plain(&view)],
+            of(
+                "radiance below the surface over n^2, of water over a black bed, per irradiance of the surface by the sky",
+                "1/sr",
+            ),
+            |[i, j, _], w| fine[w][i].sky[j],
+        ),
+        baked(
+            LAYOUT,
+            name("_seabed"),
+            vec![plain(&deep), plain(&view)],
+            of("radiance below the surface over n^2, per radiance of an evenly bright bed", "1"),
+            |[i, j, _], w| fine[w][i].seabed[j],
+        ),
+        baked(
+            LAYOUT,
+            name("_seabed_sun"),
+            vec![plain(&deep), plain(&sun)],
+            of("irradiance of a black bed, per irradiance that the sun brings in", "1"),
+            |[i, k, _], w| fine[w][i].seabed_sun[k],
+        ),
+        baked(
+            LAYOUT,
+            name("_seabed_depth"),
+            vec![plain(&deep), rows],
+            of("irradiance of a black bed", "1"),
+            |[i, row, _], w| fine[w][i].seabed_depth[row],
+        ),
+    ]
+}
+
+pub(super) fn plain(formula: &crate::table::AxisFormula) -> crate::export::manifest::Axis {
+    let mut axis = crate::bake::tables::axis(formula);
+    if formula.name == "depth" {
+        axis.unit = "m".into();
+    }
+    axis
+}
+
+/// `whole`: the table with a sun and a view axis too.
+fn column(layer: &Layer, angles: &Angles, whole: bool) -> Column {
+    let n2 = layer.slab.surface.n * layer.slab.surface.n;
+    let (sky, bed) = (layer.sky(), layer.bed());
+    let see = |field, scale: f64| -> Vec<f64> {
+        angles.views.iter().map(|v| layer.up(field, v, [0.0; 2], 0.0) * scale).collect()
+    };
+    let mut out = Column {
+        sky: see(&sky, 1.0 / n2),
+        seabed: see(&bed, 1.0 / n2),
+        seabed_depth: [layer.bed_irradiance(&sky), layer.bed_irradiance(&bed)],
+        ..Column::default()
+    };
+    for (k, beam) in angles.beams.iter().enumerate() {
+        let sunlit = angles.sun(layer, k);
+        if !whole {
+            out.seabed_sun.push(layer.bed_irradiance(&sunlit) / beam.mu);
+            continue;
+        }
+        let light = |(j, view)| layer.up(&sunlit, view, angles.pair(j, k), 0.0) / (beam.mu * n2);
+        out.water.extend(angles.views.iter().enumerate().map(light));
+    }
+    out
+}
