@@ -11,18 +11,38 @@ use rayon::prelude::*;
 
 /// Texels of depth of tables without a sun axis, which cost little.
 const DEPTHS: usize = 128;
-/// Depth is D_max x^3: the second of 32 texels of a sea of 100 m is 3 mm deep, the last step 10 m.
-const DEPTH_POWER: f64 = 3.0;
+/// Powers p that the axis D = D_max x^p may have: at 3 and 32 texels to 100 m the second is 3 mm deep and the last
+/// step 10 m.
+const DEPTH_POWERS: [f64; 5] = [2.0, 3.0, 4.0, 5.0, 6.0];
 /// Cosines in the water are kept off 0, where no ray gets anywhere (n = 1 only).
 pub(super) const LEAST_COSINE: f64 = 1e-4;
 
 /// The sun axis of water: above the horizon only.
 pub(super) const SUN: EvenCosine = EvenCosine { name: "sun", least: 0.0 };
 
-/// The depth and view axes of a water.
-pub(super) fn axes(water: &Water, media: &WaterMedium) -> WaterAxes {
+/// The depth and view axes of a water; the power of depth is the one that loses least on `texels` of it.
+pub(super) fn axes(water: &Water, media: &WaterMedium, slabs: &[Slab], texels: usize) -> WaterAxes {
     let n = media.refractive_index.iter().sum::<f64>() / media.refractive_index.len() as f64;
-    WaterAxes { largest_depth: water.largest_depth, depth_power: DEPTH_POWER, n }
+    let with = |depth_power| WaterAxes { largest_depth: water.largest_depth, depth_power, n };
+    let loss = |power: f64| slabs.iter().map(|s| depth_loss(&with(power), s, texels)).fold(0.0, f64::max);
+    let losses = DEPTH_POWERS.map(|p| (p, loss(p)));
+    let best = losses.iter().fold(losses[0], |a, b| if b.1 < a.1 { *b } else { a });
+    with(best.0)
+}
+
+/// Largest relative error of linear interpolation in 1 − e^{−2 K D}, the rise of water's own light with depth, K
+/// the rate at which light fades in deep water.
+fn depth_loss(axes: &WaterAxes, slab: &Slab, texels: usize) -> f64 {
+    let k = 2.0 * slab.extinction * slab.slowest();
+    let rise = |x: f64| -libm::expm1(-k * axes.largest_depth * libm::pow(x, axes.depth_power));
+    let step = 1.0 / (texels - 1) as f64;
+    // Shallower than the second texel there is next to nothing to see.
+    let between = (2..texels).map(|i| {
+        let (from, to) = (rise((i - 1) as f64 * step), rise(i as f64 * step));
+        let middle = rise((i as f64 - 0.5) * step);
+        if middle > 0.0 { (0.5 * (from + to) / middle - 1.0).abs() } else { 0.0 }
+    });
+    between.fold(0.0, f64::max)
 }
 
 /// Values at one wavelength and depth.
@@ -41,8 +61,8 @@ struct Column {
 
 /// W, S, U, W_b, and S_b with r: see the module's formula.
 pub(super) fn tables(water: &Water, media: &WaterMedium, slabs: &[Slab], waters: &Waters) -> Vec<Baked> {
-    let axes = axes(water, media);
     let [depths, views, suns] = waters.size;
+    let axes = axes(water, media, slabs, depths);
     let inside = |slab: &Slab, mu: f64| slab.surface.cosine_in_water(mu).max(LEAST_COSINE);
     let angles: Vec<Angles> = slabs
         .par_iter()

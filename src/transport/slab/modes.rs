@@ -91,6 +91,11 @@ impl Slab {
         slab
     }
 
+    /// The rate at which light fades far from surface and bed, over scaled optical depth.
+    pub fn slowest(&self) -> f64 {
+        self.rates.iter().fold(f64::INFINITY, |a: f64, &b| a.min(b))
+    }
+
     fn set_modes(&mut self) {
         let n = self.nodes.len();
         let y = self.triangle.times(&self.vectors);
