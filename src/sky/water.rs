@@ -22,6 +22,8 @@ pub struct WaterSky {
     lowest_sun: f64,
     slice: usize,
     bed: Vec<f64>,
+    /// Rate of the rise with depth that the tables leave out, 1/m.
+    kappa: Vec<f64>,
     rgb_from_four: Vec<Vec<f64>>,
     illuminance: f64,
     water: Grid,
@@ -131,6 +133,13 @@ impl WaterSky {
                 of("seabed_albedo_at_four")
             ));
         }
+        let kappa = list(&of("kappa_per_m"))?;
+        if kappa.len() != nm.len() || kappa.iter().any(|k| *k < 0.0) {
+            return Err(format!(
+                "constants.{}: must be 0 or more, for each of the four wavelengths",
+                of("kappa_per_m")
+            ));
+        }
         let matrix = of("rgb_from_four");
         let rgb = manifest
             .colour
@@ -158,6 +167,7 @@ impl WaterSky {
             lowest_sun: constant(light_table, 0, "mu_min", (-1.0, 0.999))?,
             slice,
             bed,
+            kappa,
             rgb_from_four: rgb
                 .cloned()
                 .ok_or(format!("colour.matrices.{matrix} is missing or has a wrong size"))?,
@@ -219,7 +229,11 @@ impl WaterSky {
             let water = self.water.at([d, v, sun, none]);
             let (d, v) = place(&self.sky);
             let sky = self.sky.at([d, v, none, none]);
-            sum = std::array::from_fn(|w| lit[0][w] * water[w] + lit[1][w] * sky[w]);
+            let risen = |w: usize| match self.kappa.get(w) {
+                Some(&kappa) if kappa > 0.0 => -libm::expm1(-kappa * view.depth),
+                _ => 1.0,
+            };
+            sum = std::array::from_fn(|w| risen(w) * (lit[0][w] * water[w] + lit[1][w] * sky[w]));
         }
         if component != Component::Scattering {
             let (d, v) = place(&self.seabed);

@@ -10,7 +10,7 @@ const WORST: f64 = 0.01;
 fn agrees(found: f64, (mean, stderr): (f64, f64), whole: f64, what: &str) {
     let off = (found - mean).abs();
     assert!(off < WORST * whole + 3.5 * stderr, "{what}: {found} is not {mean} ± {stderr}");
-    assert!(stderr < 0.03 * whole, "{what}: the reference is too noisy to judge: {mean} ± {stderr}");
+    assert!(stderr < 0.05 * whole, "{what}: the reference is too noisy to judge: {mean} ± {stderr}");
 }
 
 fn check(medium: &tyndall::medium::WaterMedium, depth: f64, paths: u64) {
@@ -42,6 +42,6 @@ fn slab_against_monte_carlo() {
         (0.05, 1.0, HenyeyGreenstein { g: 0.5 }, 1.2, 0.1, 10.0),
     ];
     for (a, b, phase, n, bed, depth) in cases {
-        check(&water(a, b, phase, n, bed), depth, 60_000);
+        check(&water(a, b, phase, n, bed), depth, 30_000);
     }
 }

@@ -20,30 +20,24 @@ pub(super) const LEAST_COSINE: f64 = 1e-4;
 /// The sun axis of water: above the horizon only.
 pub(super) const SUN: EvenCosine = EvenCosine { name: "sun", least: 0.0 };
 
-/// The depth and view axes of a water; the power of depth is the one that loses least on `texels` of it.
-pub(super) fn axes(water: &Water, media: &WaterMedium, slabs: &[Slab], texels: usize) -> WaterAxes {
+/// The depth and view axes of a water: the smallest power that gives its thickest wavelength room to change.
+pub(super) fn axes(water: &Water, media: &WaterMedium, slabs: &[Slab]) -> WaterAxes {
     let n = media.refractive_index.iter().sum::<f64>() / media.refractive_index.len() as f64;
-    let with = |depth_power| WaterAxes { largest_depth: water.largest_depth, depth_power, n };
-    let loss = |power: f64| slabs.iter().map(|s| depth_loss(&with(power), s, texels)).fold(0.0, f64::max);
-    let losses = DEPTH_POWERS.map(|p| (p, loss(p)));
-    let best = losses.iter().fold(losses[0], |a, b| if b.1 < a.1 { *b } else { a });
-    with(best.0)
+    let thickest = slabs.iter().map(|s| rise(s) * water.largest_depth).fold(1.0, f64::max);
+    let enough = |p: &f64| libm::pow(thickest, -1.0 / p) >= ROOM;
+    let depth_power = DEPTH_POWERS.into_iter().find(enough).unwrap_or(DEPTH_POWERS[DEPTH_POWERS.len() - 1]);
+    WaterAxes { largest_depth: water.largest_depth, depth_power, n }
 }
 
-/// Largest relative error of linear interpolation in 1 − e^{−2 K D}, the rise of water's own light with depth, K
-/// the rate at which light fades in deep water.
-fn depth_loss(axes: &WaterAxes, slab: &Slab, texels: usize) -> f64 {
-    let k = 2.0 * slab.extinction * slab.slowest();
-    let rise = |x: f64| -libm::expm1(-k * axes.largest_depth * libm::pow(x, axes.depth_power));
-    let step = 1.0 / (texels - 1) as f64;
-    // Shallower than the second texel there is next to nothing to see.
-    let between = (2..texels).map(|i| {
-        let (from, to) = (rise((i - 1) as f64 * step), rise(i as f64 * step));
-        let middle = rise((i as f64 - 0.5) * step);
-        if middle > 0.0 { (0.5 * (from + to) / middle - 1.0).abs() } else { 0.0 }
-    });
-    between.fold(0.0, f64::max)
+/// Rate at which water's own light rises with depth, 1/m: down and up, at the pace of deep water.
+pub(super) fn rise(slab: &Slab) -> f64 {
+    2.0 * slab.extinction * slab.slowest()
 }
+
+/// Share of the depth axis for the first length over which light rises.
+const ROOM: f64 = 0.15;
+/// Depth at which the limit of depth 0 is taken, over that length.
+const SHALLOW: f64 = 1e-4;
 
 /// Values at one wavelength and depth.
 #[derive(Default)]
@@ -62,7 +56,7 @@ struct Column {
 /// W, S, U, W_b, and S_b with r: see the module's formula.
 pub(super) fn tables(water: &Water, media: &WaterMedium, slabs: &[Slab], waters: &Waters) -> Vec<Baked> {
     let [depths, views, suns] = waters.size;
-    let axes = axes(water, media, slabs, depths);
+    let axes = axes(water, media, slabs);
     let inside = |slab: &Slab, mu: f64| slab.surface.cosine_in_water(mu).max(LEAST_COSINE);
     let angles: Vec<Angles> = slabs
         .par_iter()
@@ -78,7 +72,10 @@ pub(super) fn tables(water: &Water, media: &WaterMedium, slabs: &[Slab], waters:
             .into_par_iter()
             .map(|k| {
                 let (w, depth) = (k / count, axes.depth(k % count, count));
-                column(&Layer::new(&slabs[w], depth), &angles[w], whole)
+                let kappa = rise(&slabs[w]);
+                let depth = if kappa > 0.0 { depth.max(SHALLOW / kappa) } else { depth };
+                let risen = if kappa > 0.0 { -libm::expm1(-kappa * depth) } else { 1.0 };
+                column(&Layer::new(&slabs[w], depth), &angles[w], whole, risen)
             })
             .collect::<Vec<_>>()
             .into_iter()
@@ -108,7 +105,7 @@ pub(super) fn tables(water: &Water, media: &WaterMedium, slabs: &[Slab], waters:
             name(""),
             vec![plain(&depth), plain(&view), plain(&sun)],
             of(
-                "radiance below the surface over n^2, of water over a black bed, per irradiance that the sun brings in",
+                "radiance below the surface over n^2, of water over a black bed, per irradiance that the sun brings in and 1 - exp(-kappa D)",
                 "1/sr",
             ),
             |[i, j, k], w| coarse[w][i].water[k * views + j],
@@ -118,7 +115,7 @@ pub(super) fn tables(water: &Water, media: &WaterMedium, slabs: &[Slab], waters:
             name("_sky"),
             vec![plain(&deep), plain(&view)],
             of(
-                "radiance below the surface over n^2, of water over a black bed, per irradiance of the surface by the sky",
+                "radiance below the surface over n^2, of water over a black bed, per irradiance of the surface by the sky and 1 - exp(-kappa D)",
                 "1/sr",
             ),
             |[i, j, _], w| fine[w][i].sky[j],
@@ -155,15 +152,15 @@ pub(super) fn plain(formula: &crate::table::AxisFormula) -> crate::export::manif
     axis
 }
 
-/// `whole`: the table with a sun and a view axis too.
-fn column(layer: &Layer, angles: &Angles, whole: bool) -> Column {
+/// `whole`: the table with a sun and a view axis; `risen`: what water's own light is divided by.
+fn column(layer: &Layer, angles: &Angles, whole: bool, risen: f64) -> Column {
     let n2 = layer.slab.surface.n * layer.slab.surface.n;
     let (sky, bed) = (layer.sky(), layer.bed());
     let see = |field, scale: f64| -> Vec<f64> {
         angles.views.iter().map(|v| layer.up(field, v, [0.0; 2], 0.0) * scale).collect()
     };
     let mut out = Column {
-        sky: see(&sky, 1.0 / n2),
+        sky: see(&sky, 1.0 / (n2 * risen)),
         seabed: see(&bed, 1.0 / n2),
         seabed_depth: [layer.bed_irradiance(&sky), layer.bed_irradiance(&bed)],
         ..Column::default()
@@ -174,7 +171,7 @@ fn column(layer: &Layer, angles: &Angles, whole: bool) -> Column {
             out.seabed_sun.push(layer.bed_irradiance(&sunlit) / beam.mu);
             continue;
         }
-        let light = |(j, view)| layer.up(&sunlit, view, angles.pair(j, k), 0.0) / (beam.mu * n2);
+        let light = |(j, view)| layer.up(&sunlit, view, angles.pair(j, k), 0.0) / (beam.mu * n2 * risen);
         out.water.extend(angles.views.iter().enumerate().map(light));
     }
     out

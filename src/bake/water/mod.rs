@@ -3,11 +3,13 @@
 //! Tables hold what the water does to light and leave out what the surface and the air do, so that they are
 //! smooth and that an engine may tilt the surface: radiance just below it over n², per unit of what enters. With
 //! F Fresnel's reflectance, E_sun and E_sky the irradiances of the surface, A the albedo of the bed,
-//!   L = (1 − F(mu)) [ (1 − F(mu_s)) E_sun W(D, mu, mu_s) + E_sky S(D, mu) + U(D, mu) A B / (π − A r(D)) ]
+//!   L = (1 − F(mu)) [ (1 − e^{−κD}) ((1 − F(mu_s)) E_sun W(D, mu, mu_s) + E_sky S(D, mu))
+//!                     + U(D, mu) A B / (π − A r(D)) ]
 //!   B = (1 − F(mu_s)) E_sun W_b(D, mu_s) + E_sky S_b(D)
 //! is what leaves the water: the water's own light, and that of the bed with every bounce between bed, water and
 //! surface. W is `<name>`, S `<name>_sky`, U `<name>_seabed`, W_b `<name>_seabed_sun`; S_b and r are the rows of
-//! `<name>_seabed_depth`, E_sun and E_sky those of `irradiance`; F is in `fresnel`.
+//! `<name>_seabed_depth`, E_sun and E_sky those of `irradiance`; F is in `fresnel`; κ is the constant
+//! `water_<name>_kappa_per_m`, which takes the steep rise of shallow water out of W and S.
 
 mod colour;
 mod fill;
@@ -96,6 +98,7 @@ pub fn tables(
         out.colours.insert(water.name.clone(), error);
         out.constants.insert(key("seabed_albedo_at_four"), media.seabed_albedo.clone());
         out.constants.insert(key("refractive_index_at_four"), media.refractive_index.clone());
+        out.constants.insert(key("kappa_per_m"), slabs.iter().map(fill::rise).collect());
         out.constants.insert(key("largest_depth_m"), vec![water.largest_depth]);
     }
     Ok(out)

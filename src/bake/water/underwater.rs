@@ -21,7 +21,7 @@ pub(super) const VIEW: EvenCosine = EvenCosine { name: "view", least: -1.0 };
 /// observer · suns + sun.
 pub(super) fn tables(water: &Water, media: &WaterMedium, slabs: &[Slab], orders: WaterOrders) -> Vec<Baked> {
     let [depths, views, suns, observers] = SIZE;
-    let axes = axes(water, media, slabs, depths);
+    let axes = axes(water, media, slabs);
     let light: Vec<Vec<[Vec<f64>; 3]>> = slabs
         .par_iter()
         .enumerate()

@@ -11,6 +11,9 @@ pub fn refract(mu: f64, n: f64) -> Option<f64> {
 /// §1.5.3): `mu` is the cosine of incidence, `n` the index of the far side over that of the near side. 1 beyond
 /// the critical angle.
 pub fn fresnel(mu: f64, n: f64) -> f64 {
+    if n == 1.0 {
+        return 0.0;
+    }
     let Some(inner) = refract(mu, n) else { return 1.0 };
     if mu <= 0.0 {
         return 1.0;
