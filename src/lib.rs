@@ -1,11 +1,11 @@
-//! `tyndall` bakes lookup tables for planetary atmospheres.
+//! `tyndall` bakes lookup tables for planetary atmospheres and waters.
 //!
 //! The pipeline, one way: preset → spectrum + medium → optical depth → single scattering → orders →
 //! tables → colour → files. A preview, an engine or `tyndall sample` then reads the files alone.
 //!
 //! In scope: scalar radiative transfer in a spherical shell, any number of constituents, absorbers, a
-//! Lambertian ground, one star. Out of scope: polarisation, refraction, horizontal variation, clouds with
-//! edges, thermal emission.
+//! Lambertian ground, one star; plane-parallel water under a flat surface. Out of scope: polarisation,
+//! refraction in air, waves, horizontal variation, clouds with edges, thermal emission.
 //!
 //! Who may know whom: `spectrum`, `medium` and `table` know nobody above them; `transport` knows no preset,
 //! file or colour; `reference` shares the medium with `transport` and no line of its integration; `bake`

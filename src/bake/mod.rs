@@ -12,5 +12,6 @@ pub mod settings;
 pub mod skies;
 mod spectral;
 pub mod tables;
+pub mod water;
 
 pub use pipeline::{Product, bake};

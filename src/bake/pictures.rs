@@ -5,6 +5,7 @@ use crate::export::picture::{Exposure, fisheye, from_space};
 use crate::export::sheet::{Panel, contact_sheet};
 use crate::points::Point;
 use crate::preset::Planet;
+use crate::sky::water::{WaterSky, WaterView};
 use crate::sky::{Component, Sky};
 
 const SIZE: usize = 144;
@@ -14,8 +15,12 @@ const SUNS: [f64; 6] = [60.0, 20.0, 5.0, 0.0, -4.0, -8.0];
 /// Sun elevations at the point below the observer in space.
 const SPACE_SUNS: [f64; 2] = [45.0, -15.0];
 
+/// Depths of water, m, and sun elevations over it, as in Elek & Kmoch's Fig. 5.
+const WATER_DEPTHS: [f64; 4] = [2.0, 4.0, 10.0, 100.0];
+const WATER_SUNS: [f64; 2] = [60.0, 15.0];
+
 /// The picture, and the number of pixels that no display can show.
-pub fn preview(sky: &Sky, planet: &Planet) -> Result<(Vec<u8>, usize)> {
+pub fn preview(sky: &Sky, planet: &Planet, waters: &[(&str, &WaterSky)]) -> Result<(Vec<u8>, usize)> {
     let mut panels: Vec<Panel> = Vec::new();
     for sun in SUNS {
         let look = |v: [f64; 3]| Some(colour(sky, &point(2.0, v, sun)));
@@ -27,6 +32,13 @@ pub fn preview(sky: &Sky, planet: &Planet) -> Result<(Vec<u8>, usize)> {
         let radii = [planet.ground_radius + distance, planet.top_radius];
         panels.push(from_space(SIZE, &format!("SPACE {sun:.0}"), Exposure::Auto, radii, look));
     }
+    for (name, water) in waters {
+        for (sun, depth) in WATER_SUNS.iter().flat_map(|s| WATER_DEPTHS.map(|d| (*s, d))) {
+            let look = |v: [f64; 3]| Some(water_colour(sky, water, v, sun, depth));
+            let label = format!("{name} {depth:.0} M SUN {sun:.0}");
+            panels.push(fisheye(SIZE, &label, Exposure::Auto, look));
+        }
+    }
     let errors = panels.iter().map(|p| p.errors).sum();
     Ok((contact_sheet(&panels, COLUMNS)?, errors))
 }
@@ -35,6 +47,19 @@ pub fn preview(sky: &Sky, planet: &Planet) -> Result<(Vec<u8>, usize)> {
 fn point(altitude: f64, v: [f64; 3], sun: f64) -> Point {
     let azimuth_deg = libm::atan2(v[1].abs(), v[0]).to_degrees();
     Point { altitude, mu: v[2].clamp(-1.0, 1.0), mu_s: libm::sin(sun.to_radians()), azimuth_deg }
+}
+
+/// Flat water below, straight down in the middle of the panel, the horizon on its circle: light out of the water
+/// and the sky that it mirrors. `v` is the direction of the mirrored ray, upwards.
+fn water_colour(sky: &Sky, water: &WaterSky, v: [f64; 3], sun: f64, depth: f64) -> [f64; 3] {
+    let above = point(0.0, v, sun);
+    let view =
+        WaterView { depth: depth.min(water.largest_depth), mu: v[2].clamp(0.0, 1.0), mu_s: above.mu_s };
+    let out = water.rgb(&water.leaving(&view, Component::Total));
+    let mirrored = water.mirrored(view.mu);
+    let share = mirrored.iter().sum::<f64>() / mirrored.len() as f64;
+    let sky = sky.rgb(&above, Component::Scattering);
+    std::array::from_fn(|c| (out[c] + share * sky[c]).max(0.0))
 }
 
 /// Colours outside the gamut are brought to its edge: a display can do no other. What is not a number stays.

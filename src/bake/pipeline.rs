@@ -3,7 +3,7 @@
 use super::palette::Palette;
 use super::settings::{Layout, Settings, Solver};
 use super::tables::Baked;
-use super::{compact, elek2010, extinction, pictures, report, skies, spectral};
+use super::{compact, elek2010, extinction, pictures, report, skies, spectral, water};
 use crate::error::{Error, Result};
 use crate::export::manifest::{
     Colour, GridKind, Manifest, OtherFile, Preset, SCHEMA_VERSION, Table, Tool, Wavelengths,
@@ -11,6 +11,7 @@ use crate::export::manifest::{
 use crate::export::{Atlas, exr};
 use crate::medium::{Medium, Role};
 use crate::preset::Planet;
+use crate::sky::water::WaterSky;
 use crate::sky::{AerosolPhase, Sky};
 use crate::spectrum::RANGE;
 use crate::transport::solve::{Orders, Resolution, Solution, worst};
@@ -89,6 +90,15 @@ pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -
         baked.extend(tables);
         counts.insert("compact multiple scattering below 0, set to dark".into(), json!(negative));
     }
+    let waters = &settings.waters.list;
+    let mut water_tables = None;
+    if !waters.is_empty() {
+        stage("water tables");
+        let mut filled = water::tables(planet, settings, medium, light, &palette)?;
+        baked.append(&mut filled.tables);
+        water_tables = Some(filled);
+        warnings.extend(waters.iter().flat_map(|w| w.warnings.iter().map(|t| format!("{}: {t}", w.name))));
+    }
 
     stage("encode");
     let mut files = Files::encode(&baked)?;
@@ -96,6 +106,22 @@ pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -
         files.extra.extend(spectral::files(&paper, light, planet, settings)?);
     }
     let mut manifest = manifest(planet, settings, &palette, &full, &files);
+    if let Some(filled) = &water_tables {
+        manifest.colour.matrices.extend(filled.matrices.clone());
+        manifest.constants.extend(filled.constants.clone());
+        let preset = |w: &crate::preset::Water| Preset {
+            name: w.name.clone(),
+            hash: w.hash(),
+            resolved: w.resolved(),
+        };
+        manifest.waters = waters.iter().map(preset).collect();
+    }
+    let water_skies: Vec<WaterSky> = waters
+        .iter()
+        .map(|w| {
+            WaterSky::new(Path::new("the bake in memory"), &manifest, &w.name, &files.named(water::LAYOUT))
+        })
+        .collect::<Result<_>>()?;
     let open = |layout: Layout| -> Result<Option<Sky>> {
         if !wants(layout) {
             return Ok(None);
@@ -128,6 +154,10 @@ pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -
             quality.insert("elek2010_against_the_full_medium".into(), full);
         }
     }
+    if let Some(filled) = &water_tables {
+        let found = water::report(waters, medium, light, &palette, filled, &water_skies);
+        quality.insert("water".into(), found);
+    }
     counts.insert("stored halves".into(), files.odd_halves());
     quality.insert("counts".into(), Value::Object(counts));
     for (name, light) in [("full", &full_light), ("paper's", &paper_light)] {
@@ -142,7 +172,7 @@ pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -
 
     stage("picture");
     let sky = compact_sky.as_ref().or(paper_sky.as_ref()).expect("a layout was baked");
-    let (picture, errors) = pictures::preview(sky, planet)?;
+    let (picture, errors) = pictures::preview(sky, planet, &named(waters, &water_skies))?;
     if errors > 0 {
         warnings.push(format!("preview.png: {errors} pixels that no display can show (in magenta)"));
     }
@@ -169,6 +199,10 @@ pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -
     out.extend(files.extra.into_iter().map(|(file, _, bytes)| (file, bytes)));
     out.push(("bake.json".into(), text.into_bytes()));
     Ok(Product { files: out, manifest })
+}
+
+fn named<'a>(waters: &'a [crate::preset::Water], skies: &'a [WaterSky]) -> Vec<(&'a str, &'a WaterSky)> {
+    waters.iter().map(|w| w.name.as_str()).zip(skies).collect()
 }
 
 /// A warning where wavelengths lie outside those that colours are made of.
@@ -228,7 +262,11 @@ impl Files {
     }
 
     fn of(&self, layout: Layout) -> BTreeMap<String, Atlas> {
-        let of_layout = self.tables.iter().filter(|t| t.entry.layout == layout.name());
+        self.named(layout.name())
+    }
+
+    fn named(&self, layout: &str) -> BTreeMap<String, Atlas> {
+        let of_layout = self.tables.iter().filter(|t| t.entry.layout == layout);
         of_layout.map(|t| (t.entry.name.clone(), t.atlas.clone())).collect()
     }
 
@@ -282,6 +320,7 @@ fn manifest(
             matrices,
         },
         constants: constants(planet, palette, medium),
+        waters: Vec::new(),
         tables: files.tables.iter().map(|t| t.entry.clone()).collect(),
         files: Vec::new(),
         quality: Value::Null,

@@ -1,8 +1,10 @@
 //! What a bake is asked for, apart from the planet: everything that decides its bytes.
 
 use super::compact::Sizes;
+use super::water::Waters;
 use crate::spectrum::ColourSpace;
 use crate::table::Elek2010;
+use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
 use serde_json::{Value, json};
 
@@ -42,6 +44,7 @@ pub struct Settings {
     pub space: ColourSpace,
     pub solver: Solver,
     pub spectral: bool,
+    pub waters: Waters,
     /// The planet is a shipped preset as it is, so that `verify` may tell when a later tool ships another.
     pub shipped_preset: bool,
 }
@@ -62,6 +65,7 @@ impl Default for Settings {
             space: ColourSpace::Srgb,
             solver: Solver::Moments,
             spectral: false,
+            waters: Waters::default(),
             shipped_preset: false,
         }
     }
@@ -86,6 +90,13 @@ impl Settings {
             "orders": orders,
             "solver": solver,
             "spectral": self.spectral,
+            "waters": self.waters.list.iter().map(|w| w.name.as_str()).collect::<Vec<_>>(),
+            "water_size": self.waters.size,
+            "water_orders": match self.waters.orders {
+                WaterOrders::All => json!("all"),
+                WaterOrders::Single => json!({ "first": 1 }),
+            },
+            "underwater": self.waters.underwater,
             "shipped_preset": self.shipped_preset,
         })
     }

@@ -4,12 +4,14 @@ use super::machine::{IsaChoice, orders, wavelengths, with_threads};
 use super::text::print;
 use crate::bake::compact::Sizes;
 use crate::bake::settings::{Layout, Settings, Solver, TOLERANCE};
+use crate::bake::water::Waters;
 use crate::bake::{Product, bake};
 use crate::error::{Error, Result};
 use crate::export::staging::Staging;
 use crate::preset::{self, Planet};
 use crate::spectrum::ColourSpace;
 use crate::table::Elek2010;
+use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
@@ -31,9 +33,18 @@ pub struct Args {
     #[arg(long, value_delimiter = ',', value_enum, default_values_t = [Layout::Elek2010, Layout::Compact])]
     layout: Vec<Layout>,
     /// Texels: altitude x view x sun x azimuth (of elek2010), or LAYOUT=AxBxCxD with LAYOUT elek2010, compact
-    /// (its table of multiple scattering) or compact-single; repeatable
+    /// (its table of multiple scattering) or compact-single; water=AxBxC: depth x view x sun; repeatable
     #[arg(long, value_name = "SIZE")]
     size: Vec<String>,
+    /// Waters to bake too, comma-separated: names (see `tyndall presets`) or paths of JSON files; or none
+    #[arg(long, value_delimiter = ',', default_value = "none", value_name = "WATER")]
+    waters: Vec<String>,
+    /// Tables for observers under water too
+    #[arg(long)]
+    underwater: bool,
+    /// Orders of scattering in the water: auto (all), or 1 (the paper's shortcut)
+    #[arg(long, default_value = "auto", value_parser = ["auto", "1"])]
+    water_orders: String,
     /// Orders of scattering to sum: auto (until converged) or a number
     #[arg(long, default_value = "auto", value_parser = |t: &str| orders(t, TOLERANCE))]
     orders: Orders,
@@ -113,6 +124,7 @@ fn settings(args: &Args) -> Result<Settings> {
     let wavelengths_nm = wavelengths(&args.wavelengths)
         .map_err(|reason| Error::Argument(format!("--wavelengths {}: {reason}", args.wavelengths)))?;
     let literal = args.solver == "literal";
+    let waters = waters(args)?;
     let mut settings = Settings {
         layouts,
         orders: args.orders,
@@ -120,6 +132,7 @@ fn settings(args: &Args) -> Result<Settings> {
         space: args.colour_space,
         solver: if literal { Solver::Literal { samples: 30 } } else { Solver::Moments },
         spectral: args.spectral,
+        waters,
         ..Settings::default()
     };
     if literal && matches!(args.orders, Orders::Converged { .. }) {
@@ -135,18 +148,63 @@ fn settings(args: &Args) -> Result<Settings> {
     }
     for text in &args.size {
         let (name, size) = text.split_once('=').unwrap_or((Layout::Elek2010.name(), text));
+        if name == "water" {
+            settings.waters.size = water_size(size).ok_or_else(|| {
+                Error::Argument(format!(
+                    "--size {text}: expected three numbers from 2 to 1024, e.g. 32x64x64"
+                ))
+            })?;
+            continue;
+        }
         let size = parse_size(size).map_err(|reason| Error::Argument(format!("--size {text}: {reason}")))?;
         match name {
             "elek2010" => settings.elek2010_size = size,
             "compact" => settings.compact_sizes = Sizes { multiple: size, ..settings.compact_sizes },
             "compact-single" => settings.compact_sizes = Sizes { single: size, ..settings.compact_sizes },
             other => {
-                let known = "elek2010, compact or compact-single";
+                let known = "elek2010, compact, compact-single or water";
                 return Err(Error::Argument(format!("--size {text}: {other} is not one of {known}")));
             }
         }
     }
     Ok(settings)
+}
+
+/// The waters to bake; each name is that of its tables, so it can stand only once.
+fn waters(args: &Args) -> Result<Waters> {
+    let names: Vec<&String> = args.waters.iter().filter(|w| *w != "none").collect();
+    if names.len() != args.waters.len() && args.waters.len() > 1 {
+        return Err(Error::Argument("--waters: `none` stands alone".into()));
+    }
+    let list = names.iter().map(|w| preset::load_water(w, &[])).collect::<Result<Vec<_>>>()?;
+    for (k, water) in list.iter().enumerate() {
+        if list[..k].iter().any(|other| other.name == water.name) {
+            return Err(Error::Argument(format!("--waters: two are named {}", water.name)));
+        }
+        if RESERVED.contains(&water.name.as_str()) {
+            return Err(Error::Argument(format!(
+                "--waters: {} is the name of a table of every bake",
+                water.name
+            )));
+        }
+    }
+    let single = args.water_orders == "1";
+    if list.is_empty() && (single || args.underwater) {
+        let option = if single { "--water-orders" } else { "--underwater" };
+        return Err(Error::Argument(format!("{option} needs --waters")));
+    }
+    let orders = if single { WaterOrders::Single } else { WaterOrders::All };
+    Ok(Waters { list, underwater: args.underwater, orders, ..Waters::default() })
+}
+
+/// Tables of the water layout that belong to no water.
+const RESERVED: [&str; 2] = ["fresnel", "irradiance"];
+
+fn water_size(text: &str) -> Option<[usize; 3]> {
+    let parts: Vec<usize> = text.split('x').map(|p| p.parse().ok()).collect::<Option<_>>()?;
+    let size: [usize; 3] = parts.try_into().ok()?;
+    let few = size.iter().product::<usize>() <= MOST_TEXELS;
+    (few && size.iter().all(|n| (2..=1024).contains(n))).then_some(size)
 }
 
 /// Texels that a table may have: 256 million floats of four channels are four gigabytes.

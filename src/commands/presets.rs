@@ -1,12 +1,13 @@
 //! `tyndall presets`: what is shipped, what a preset means, and whether files are presets.
 
 use super::presets_show::{as_json, as_text};
+use super::presets_water;
 use super::text::print;
 use crate::error::{Error, Result};
 use crate::preset;
 use std::path::{Path, PathBuf};
 
-/// List, show and check presets of planets.
+/// List, show and check presets of planets and waters.
 #[derive(clap::Args, Debug)]
 #[command(before_help = "Example: tyndall presets show earth
          tyndall presets check my-planet.json")]
@@ -61,19 +62,33 @@ pub fn run(args: &Args) -> Result<()> {
 }
 
 fn list(json: bool) -> Result<()> {
-    let shipped = preset::shipped();
+    let planets = preset::shipped().into_iter().map(|p| ("planet", p));
+    let waters = preset::shipped_waters().into_iter().map(|w| ("water", w));
+    let shipped: Vec<(&str, (&str, String))> = planets.chain(waters).collect();
     if json {
-        let entry = |(name, description): &(&str, String)| serde_json::json!({"name": name, "description": description});
+        let entry = |(kind, (name, description)): &(&str, (&str, String))| serde_json::json!({"name": name, "kind": kind, "description": description});
         let list: Vec<_> = shipped.iter().map(entry).collect();
         return print(&format!("{:#}\n", serde_json::Value::Array(list)));
     }
-    let width = shipped.iter().map(|p| p.0.len()).max().unwrap_or(0);
-    print(&shipped.iter().map(|(name, text)| format!("{name:width$}  {text}\n")).collect::<String>())
+    let width = shipped.iter().map(|p| p.1.0.len()).max().unwrap_or(0);
+    let line = |(kind, (name, text)): &(&str, (&str, String))| match *kind {
+        "water" => format!("{name:width$}  water: {text}\n"),
+        _ => format!("{name:width$}  {text}\n"),
+    };
+    print(&shipped.iter().map(line).collect::<String>())
 }
 
 fn show(name: &str, set: &[String], wavelengths: &[f64], json: bool) -> Result<()> {
     if let Some(w) = wavelengths.iter().find(|w| !(200.0..=4000.0).contains(*w)) {
         return Err(Error::Argument(format!("--wavelengths {w}: must be between 200 and 4000 nm")));
+    }
+    if preset::is_water(name) {
+        let water = preset::load_water(name, set)?;
+        return print(&if json {
+            presets_water::as_json(&water, wavelengths)
+        } else {
+            presets_water::as_text(&water, wavelengths)
+        });
     }
     let planet = preset::load(name, set)?;
     print(&if json { as_json(&planet, wavelengths) } else { as_text(&planet, wavelengths) })
@@ -85,14 +100,19 @@ fn check(paths: &[PathBuf]) -> Result<()> {
         names.extend(files(path)?);
     }
     if paths.is_empty() {
-        names.extend(preset::shipped_names().map(str::to_string));
+        let shipped = preset::shipped_names().chain(preset::shipped_water_names());
+        names.extend(shipped.map(str::to_string));
     }
     let mut bad = 0;
     for name in &names {
-        match preset::load(name, &[]) {
-            Ok(planet) => {
-                print(&format!("ok   {name}: {} constituents\n", planet.constituents.len()))?;
-                planet.warnings.iter().for_each(|w| eprintln!("warning: {name}: {w}"));
+        let found = match preset::is_water(name) {
+            true => preset::load_water(name, &[]).map(|w| (w.substances.len() - 1, w.warnings)),
+            false => preset::load(name, &[]).map(|p| (p.constituents.len(), p.warnings)),
+        };
+        match found {
+            Ok((count, warnings)) => {
+                print(&format!("ok   {name}: {count} constituents\n"))?;
+                warnings.iter().for_each(|w| eprintln!("warning: {name}: {w}"));
             }
             Err(error) => {
                 bad += 1;

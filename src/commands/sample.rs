@@ -1,6 +1,7 @@
 //! `tyndall sample`: what baked tables answer at any view, and the truth beside it.
 
 use super::machine::{IsaChoice, MOST_ORDERS, in_range, orders, wavelengths, with_threads};
+use super::sample_water;
 use super::text::print;
 use crate::error::{Error, Result};
 use crate::export::manifest::Manifest;
@@ -20,7 +21,7 @@ use std::path::PathBuf;
 pub struct Args {
     /// Folder of a bake
     #[arg(value_name = "BAKE")]
-    bake: PathBuf,
+    pub(super) bake: PathBuf,
     /// CSV with the columns altitude_m,mu_view,mu_sun,azimuth_deg
     #[arg(long, value_name = "CSV")]
     points: PathBuf,
@@ -29,22 +30,31 @@ pub struct Args {
     layout: Option<String>,
     /// Part of the light
     #[arg(long, value_enum, default_value = "total")]
-    component: Component,
+    pub(super) component: Component,
     /// Radiance for the preset's star, W/(m² sr nm) or cd/m², instead of over its irradiance or illuminance
     #[arg(long)]
-    absolute: bool,
+    pub(super) absolute: bool,
     /// Solve afresh with the bake's physics and integrate directly
     #[arg(long)]
-    exact: bool,
+    pub(super) exact: bool,
+    /// The light out of a water of the bake, seen from above it, instead of the air's
+    #[arg(long, value_name = "NAME", requires = "depth", conflicts_with = "layout")]
+    pub water: Option<String>,
+    /// With --water: depth of the water, m
+    #[arg(long, value_name = "M", requires = "water")]
+    pub depth: Option<f64>,
+    /// With --water: the light seen at this depth under the surface, m (bakes with --underwater)
+    #[arg(long, value_name = "M", requires = "water")]
+    pub observer_depth: Option<f64>,
     /// With --exact: wavelengths in nm [default: those of the layout, or of the bake]
     #[arg(long, value_name = "LIST", requires = "exact")]
     wavelengths: Option<String>,
     /// With --exact: auto, or the number of orders to sum [default: as baked]
     #[arg(long, requires = "exact", value_parser = |t: &str| orders(t, EXACT_TOLERANCE))]
-    orders: Option<Orders>,
+    pub(super) orders: Option<Orders>,
     /// Threads [default: all]
     #[arg(long, value_name = "N")]
-    threads: Option<usize>,
+    pub(super) threads: Option<usize>,
     /// Instruction set of the hot loops
     #[arg(long, value_enum, default_value = "auto")]
     isa: IsaChoice,
@@ -60,6 +70,9 @@ pub fn run(args: &Args) -> Result<()> {
     let points = read_points(&args.points)?;
     let planet = Planet::from_resolved(&manifest.preset.resolved)
         .map_err(|e| Error::file(&args.bake, format!("bake.json: {e}")))?;
+    if let Some(name) = &args.water {
+        return sample_water::run(args, name, &manifest, &planet, &points);
+    }
     let mut out = Vec::new();
     let text = |e| Error::machine("the answer", e);
     if args.exact {
@@ -108,13 +121,14 @@ fn layout(args: &Args, manifest: &Manifest) -> Result<String> {
     }
 }
 
-fn exact_wavelengths(args: &Args, manifest: &Manifest) -> Result<Vec<f64>> {
+pub(super) fn exact_wavelengths(args: &Args, manifest: &Manifest) -> Result<Vec<f64>> {
     if let Some(text) = &args.wavelengths {
         return wavelengths(text)
             .map_err(|reason| Error::Argument(format!("--wavelengths {text}: {reason}")));
     }
     let four = manifest.constants.get("four_wavelengths_nm");
-    let (key, nm) = match (layout(args, manifest)?.as_str(), four) {
+    let layout = if args.water.is_some() { "compact".into() } else { layout(args, manifest)? };
+    let (key, nm) = match (layout.as_str(), four) {
         ("compact", Some(four)) => ("constants.four_wavelengths_nm", four),
         _ => ("wavelengths.nm", &manifest.wavelengths.nm),
     };
@@ -123,7 +137,7 @@ fn exact_wavelengths(args: &Args, manifest: &Manifest) -> Result<Vec<f64>> {
 }
 
 /// The orders that the bake was made of.
-fn baked_orders(manifest: &Manifest) -> std::result::Result<Orders, String> {
+pub(super) fn baked_orders(manifest: &Manifest) -> std::result::Result<Orders, String> {
     match manifest.settings["orders"]["first"].as_u64() {
         Some(n) if (1..=MOST_ORDERS as u64).contains(&n) => Ok(Orders::First(n as usize)),
         Some(n) => Err(format!("settings.orders.first = {n}: must be from 1 to {MOST_ORDERS}")),
@@ -152,7 +166,7 @@ fn exact(args: &Args, medium: &Medium, baked: Orders, points: &[Point]) -> Vec<V
         .collect()
 }
 
-fn spectral(
+pub(super) fn spectral(
     out: &mut Vec<u8>,
     args: &Args,
     planet: &Planet,

@@ -95,6 +95,14 @@ fn about_the_manifest(manifest: &Manifest, shipped: impl Fn(&str) -> Option<Stri
     if hash_of(&preset.resolved) != preset.hash {
         found.push(difference("preset.hash", "is not that of the resolved preset beside it"));
     }
+    for (k, water) in manifest.waters.iter().enumerate() {
+        if hash_of(&water.resolved) != water.hash {
+            found.push(difference(
+                &format!("waters[{k}].hash"),
+                "is not that of the resolved water beside it",
+            ));
+        }
+    }
     let unchanged = manifest.settings["shipped_preset"] == true;
     if unchanged && shipped(&preset.name).is_some_and(|hash| hash != preset.hash) {
         let what = format!("the preset {:?} that this tool ships has changed since", preset.name);

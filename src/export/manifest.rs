@@ -18,6 +18,9 @@ pub struct Manifest {
     pub schema_version: u64,
     pub tool: Tool,
     pub preset: Preset,
+    /// The waters that were baked with the planet.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub waters: Vec<Preset>,
     /// The settings of the bake that decide its bytes: sizes, orders, solver.
     pub settings: Value,
     pub wavelengths: Wavelengths,

@@ -4,10 +4,12 @@
 mod check;
 mod density;
 mod phase;
+mod water;
 
 pub use check::check_shell;
 pub use density::DensityProfile;
 pub use phase::PhaseFunction;
+pub use water::{WaterMedium, WaterScatterer};
 
 /// What a constituent's scattered light counts as in tables that keep gas and aerosol apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

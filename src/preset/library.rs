@@ -10,10 +10,53 @@ const PLANETS: &[(&str, &str)] = &[
     ("earth-paper", include_str!("../../presets/planets/earth-paper.json")),
 ];
 
+/// Name and JSON text of every shipped water, in the order they are listed.
+const WATERS: &[(&str, &str)] = &[
+    ("clear-ocean", include_str!("../../presets/waters/clear-ocean.json")),
+    ("tropical", include_str!("../../presets/waters/tropical.json")),
+    ("sandy", include_str!("../../presets/waters/sandy.json")),
+    ("muddy", include_str!("../../presets/waters/muddy.json")),
+    ("algae", include_str!("../../presets/waters/algae.json")),
+    ("phytoplankton", include_str!("../../presets/waters/phytoplankton.json")),
+    ("jerlov-i", include_str!("../../presets/waters/jerlov-i.json")),
+    ("jerlov-ia", include_str!("../../presets/waters/jerlov-ia.json")),
+    ("jerlov-ib", include_str!("../../presets/waters/jerlov-ib.json")),
+    ("jerlov-ii", include_str!("../../presets/waters/jerlov-ii.json")),
+    ("jerlov-iii", include_str!("../../presets/waters/jerlov-iii.json")),
+    ("jerlov-1c", include_str!("../../presets/waters/jerlov-1c.json")),
+    ("jerlov-3c", include_str!("../../presets/waters/jerlov-3c.json")),
+    ("jerlov-5c", include_str!("../../presets/waters/jerlov-5c.json")),
+];
+
 /// Name and CSV text of every shipped spectrum.
 const SPECTRA: &[(&str, &str)] = &[
     ("ozone-serdyuchenko-233k", include_str!("../../presets/spectra/ozone-serdyuchenko-233k.csv")),
+    (
+        "phytoplankton-bricaud1998-exponent",
+        include_str!("../../presets/spectra/phytoplankton-bricaud1998-exponent.csv"),
+    ),
+    (
+        "phytoplankton-bricaud1998-factor",
+        include_str!("../../presets/spectra/phytoplankton-bricaud1998-factor.csv"),
+    ),
+    ("seabed-brown-algae", include_str!("../../presets/spectra/seabed-brown-algae.csv")),
+    ("seabed-coral-sand", include_str!("../../presets/spectra/seabed-coral-sand.csv")),
+    ("seabed-green-algae", include_str!("../../presets/spectra/seabed-green-algae.csv")),
+    ("seabed-mud", include_str!("../../presets/spectra/seabed-mud.csv")),
+    ("seabed-sand", include_str!("../../presets/spectra/seabed-sand.csv")),
+    ("seawater-absorption-wopp", include_str!("../../presets/spectra/seawater-absorption-wopp.csv")),
+    ("seawater-refractive-index", include_str!("../../presets/spectra/seawater-refractive-index.csv")),
+    (
+        "seawater-scattering-zhang2009",
+        include_str!("../../presets/spectra/seawater-scattering-zhang2009.csv"),
+    ),
     ("sun-tsis1-hsrs", include_str!("../../presets/spectra/sun-tsis1-hsrs.csv")),
+    (
+        "water-absorption-buiteveld1994",
+        include_str!("../../presets/spectra/water-absorption-buiteveld1994.csv"),
+    ),
+    ("water-refractive-index", include_str!("../../presets/spectra/water-refractive-index.csv")),
+    ("water-scattering-zhang2009", include_str!("../../presets/spectra/water-scattering-zhang2009.csv")),
 ];
 
 /// Names of the shipped presets.
@@ -21,13 +64,30 @@ pub fn shipped_names() -> impl Iterator<Item = &'static str> {
     PLANETS.iter().map(|p| p.0)
 }
 
+/// Names of the shipped waters.
+pub fn shipped_water_names() -> impl Iterator<Item = &'static str> {
+    WATERS.iter().map(|w| w.0)
+}
+
 /// Name and one-line description of every shipped preset.
 pub fn shipped() -> Vec<(&'static str, String)> {
-    let describe = |(name, text): &(&'static str, &str)| {
-        let value: serde_json::Value = serde_json::from_str(text).unwrap_or_default();
-        (*name, value["description"].as_str().unwrap_or_default().to_string())
-    };
     PLANETS.iter().map(describe).collect()
+}
+
+/// Name and one-line description of every shipped water.
+pub fn shipped_waters() -> Vec<(&'static str, String)> {
+    WATERS.iter().map(describe).collect()
+}
+
+fn describe((name, text): &(&'static str, &str)) -> (&'static str, String) {
+    let value: serde_json::Value = serde_json::from_str(text).unwrap_or_default();
+    (*name, value["description"].as_str().unwrap_or_default().to_string())
+}
+
+/// File name (as in the source tree) and JSON text of a shipped water.
+pub fn water(name: &str) -> Option<(String, &'static str)> {
+    let (_, text) = WATERS.iter().find(|w| w.0 == name)?;
+    Some((format!("presets/waters/{name}.json"), text))
 }
 
 /// File name (as in the source tree) and JSON text of a shipped preset.
@@ -100,6 +160,9 @@ mod tests {
         let mut planets: Vec<&str> = shipped_names().collect();
         planets.sort_unstable();
         assert_eq!(names("planets"), planets);
+        let mut waters: Vec<&str> = shipped_water_names().collect();
+        waters.sort_unstable();
+        assert_eq!(names("waters"), waters);
         let mut spectra: Vec<&str> = spectrum_names().chain(["cie1931-2deg"]).collect();
         spectra.sort_unstable();
         assert_eq!(names("spectra"), spectra);

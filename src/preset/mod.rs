@@ -5,6 +5,7 @@
 //! up. The modules `read_*` are the border, and the only place that knows the units of files.
 
 mod coefficient;
+mod fournier_forand;
 mod json;
 mod library;
 mod overrides;
@@ -18,12 +19,15 @@ mod read_phase;
 mod read_planet;
 mod read_profile;
 mod read_spectrum;
+mod read_water;
+mod water;
 
 pub use coefficient::Coefficient;
-pub use library::{shipped, shipped_names};
+pub use library::{shipped, shipped_names, shipped_water_names, shipped_waters};
 pub use phase::{KingFactor, PhaseLaw, Stated};
 pub use planet::{Optics, Planet, Star, Substance};
 pub use rayleigh::{AIR_NUMBER_DENSITY, air_cross_section, air_king_factor, air_refractivity};
+pub use water::{Water, WaterLaw, WaterSubstance};
 
 use crate::error::{Error, Result};
 use raw::Raw;
@@ -38,6 +42,25 @@ pub fn load(name_or_path: &str, set: &[String]) -> Result<Planet> {
     read(&file, &text, set)
 }
 
+/// A water by the name of a shipped preset (`clear-ocean`) or by the path of a JSON file; as [`load`].
+pub fn load_water(name_or_path: &str, set: &[String]) -> Result<Water> {
+    let (file, text) = find_water(name_or_path)?;
+    let value = changed(&file, &text, set)?;
+    let root = Raw::root(&file, &value);
+    root.check_sources()?;
+    read_water::water(&root)
+}
+
+/// Whether a name or path means a water and not a planet: a shipped water, or a file with its mark.
+pub fn is_water(name_or_path: &str) -> bool {
+    if shipped_water_names().any(|shipped| shipped == name_or_path) {
+        return true;
+    }
+    let text = std::fs::read_to_string(name_or_path);
+    let value = text.ok().and_then(|t| serde_json::from_str::<serde_json::Value>(&t).ok());
+    !is_shipped(name_or_path) && value.is_some_and(|v| v.get(read_water::MARK).is_some())
+}
+
 /// Whether `name` is that of a shipped preset, which [`load`] then takes, and not the path of a file.
 pub fn is_shipped(name: &str) -> bool {
     shipped_names().any(|shipped| shipped == name)
@@ -45,13 +68,33 @@ pub fn is_shipped(name: &str) -> bool {
 
 /// A planet from JSON text; `file` names it in errors and is the folder's origin for its spectra.
 pub fn read(file: &str, text: &str, set: &[String]) -> Result<Planet> {
+    let value = changed(file, text, set)?;
+    let root = Raw::root(file, &value);
+    root.check_sources()?;
+    read_planet::planet(&root)
+}
+
+fn changed(file: &str, text: &str, set: &[String]) -> Result<serde_json::Value> {
     let mut value = json::parse(file, text)?;
     for assignment in set {
         overrides::apply(&mut value, file, assignment)?;
     }
-    let root = Raw::root(file, &value);
-    root.check_sources()?;
-    read_planet::planet(&root)
+    Ok(value)
+}
+
+fn find_water(name_or_path: &str) -> Result<(String, String)> {
+    if let Some((file, text)) = library::water(name_or_path) {
+        return Ok((file, text.to_string()));
+    }
+    let path = Path::new(name_or_path);
+    if path.extension().is_some() || path.components().count() > 1 {
+        let text = std::fs::read_to_string(path).map_err(|e| Error::reading(path, e))?;
+        return Ok((name_or_path.to_string(), text));
+    }
+    let nearest = raw::nearest(name_or_path, shipped_water_names());
+    Err(Error::Argument(format!(
+        "no water is called `{name_or_path}`; the nearest is `{nearest}` (a path to a .json file works too)"
+    )))
 }
 
 /// File name for messages, and the text.

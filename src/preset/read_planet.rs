@@ -63,7 +63,7 @@ pub fn planet(raw: &Raw) -> Result<Planet> {
 }
 
 /// The name becomes a folder's, so only letters that every file system and shell takes are let in.
-fn name(raw: &Raw) -> Result<String> {
+pub fn name(raw: &Raw) -> Result<String> {
     let raw = raw.need("name")?;
     let text = raw.text()?;
     let good = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';

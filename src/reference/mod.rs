@@ -17,6 +17,7 @@ mod random;
 mod ray;
 mod scene;
 mod shells;
+pub mod water;
 
 pub use estimate::{Estimate, Settings};
 

@@ -6,6 +6,7 @@ mod check;
 mod compact;
 mod elek2010;
 mod volume;
+pub mod water;
 
 use crate::error::{Error, Result};
 use crate::export::manifest::{Manifest, Table};

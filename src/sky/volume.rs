@@ -5,13 +5,13 @@ use crate::export::manifest::{Encoding, Table};
 use crate::table::{Elek2010, SunCurve, Texel, texel};
 
 /// Stored samples of up to four channels, x fastest, and how each channel is decoded.
-struct Texels {
+pub(super) struct Texels {
     values: Vec<[f32; 4]>,
     encodings: Vec<Encoding>,
 }
 
 impl Texels {
-    fn new(table: &Table, atlas: &Atlas) -> Result<Self, String> {
+    pub(super) fn new(table: &Table, atlas: &Atlas) -> Result<Self, String> {
         let expected: usize = table.shape.iter().product();
         // The shape was held against the file when the sky was opened.
         let mut values = vec![[0.0; 4]; expected];
@@ -34,7 +34,7 @@ impl Texels {
         Ok(Texels { values, encodings })
     }
 
-    fn decode(&self, stored: [f64; 4]) -> [f64; 4] {
+    pub(super) fn decode(&self, stored: [f64; 4]) -> [f64; 4] {
         let mut out = [0.0; 4];
         for (k, e) in self.encodings.iter().enumerate() {
             out[k] = e.decode(stored[k]);
@@ -43,7 +43,7 @@ impl Texels {
     }
 
     /// Σ weight · stored sample over the corners around a place; `strides[axis]` in texels.
-    fn interpolate<const D: usize>(&self, place: &[Texel; D], strides: &[usize; D]) -> [f64; 4] {
+    pub(super) fn interpolate<const D: usize>(&self, place: &[Texel; D], strides: &[usize; D]) -> [f64; 4] {
         let mut sum = [0.0; 4];
         for corner in 0..1usize << D {
             let (mut weight, mut at) = (1.0, 0);

@@ -3,7 +3,9 @@
 mod array;
 mod elek2010;
 mod sun_curve;
+mod water;
 
 pub use array::{Array, Element, Texel, texel};
 pub use elek2010::{AxisFormula, Elek2010};
 pub use sun_curve::SunCurve;
+pub use water::{EvenCosine, WaterAxes};

@@ -26,6 +26,7 @@ mod precondition;
 mod quadrature;
 mod rays;
 mod refined;
+pub mod slab;
 pub mod solve;
 mod state;
 mod sunlight;

@@ -165,7 +165,7 @@ impl<'a> Operator<'a> {
         )
     }
 
-    /// The first order: sunlight scattered or reflected once, with the exact phase functions (Eqs. 7–8).
+    /// The first order: sunlight scattered or reflected once (Eqs. 7–8).
     pub fn first_order(&self, azimuths: usize) -> State {
         let geometry = self.geometry;
         let pairs = Pairs::new(&geometry.axis.mu_s, &midpoint_azimuths(azimuths));
@@ -205,7 +205,7 @@ impl<'a> Operator<'a> {
             for (p, (out, once)) in out.iter_mut().zip(once).enumerate() {
                 let nu = pairs.mu_s[p] * mu + pairs.across[p] * sine;
                 let nu = nu.clamp(-1.0, 1.0);
-                *out += self.optics.phase[c].value(nu) * *once;
+                *out += self.optics.smooth_phase[c].value(nu) * *once;
             }
         }
     }

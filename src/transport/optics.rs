@@ -17,6 +17,8 @@ pub struct Optics {
     pub albedo: Lanes,
     /// Phase function of each constituent.
     pub phase: Vec<PhaseLanes>,
+    /// The same without what quadratures over directions cannot see, see [`Optics::new`].
+    pub smooth_phase: Vec<PhaseLanes>,
     /// What the field misses of each constituent's forward peak.
     pub peaks: Vec<Option<ForwardPeak>>,
     /// `[constituent][degree]`: Legendre coefficients.
@@ -24,8 +26,10 @@ pub struct Optics {
 }
 
 impl Optics {
-    /// Coefficients of a medium of at most sixteen wavelengths; Legendre coefficients up to `degree`.
-    pub fn new(medium: &Medium, degree: usize) -> Self {
+    /// Coefficients of a medium of at most sixteen wavelengths; Legendre coefficients up to `degree`, and phase
+    /// functions cut off beyond degree `visible`: between the directions of a quadrature a narrower peak would be
+    /// missed or counted twice, while its moments up to `degree` are those of the series.
+    pub fn new(medium: &Medium, degree: usize, visible: usize) -> Self {
         let count = medium.wavelengths_nm.len();
         assert!(count <= WIDTH, "a batch holds at most {WIDTH} wavelengths");
         let per = |f: &dyn Fn(&crate::medium::Constituent, usize) -> f64| -> Vec<Lanes> {
@@ -46,6 +50,11 @@ impl Optics {
             scattering: per(&|c, w| c.scattering[w]),
             albedo: Lanes::from_f64(&medium.ground_albedo),
             phase: medium.constituents.iter().map(|c| PhaseLanes::new(&c.phase)).collect(),
+            smooth_phase: medium
+                .constituents
+                .iter()
+                .map(|c| PhaseLanes::cut_off(&c.phase, visible))
+                .collect(),
             peaks: medium.constituents.iter().map(|c| ForwardPeak::new(&c.phase, degree)).collect(),
             legendre,
         }
@@ -87,9 +96,14 @@ pub enum PhaseLanes {
     Quadratic { a: Lanes, b: Lanes },
     /// norm (1 + bend ν²) / (1 + g² − 2gν)^{3/2}: Henyey–Greenstein (bend 0) and Cornette–Shanks (bend 1).
     Peaked { norm: Lanes, bend: Lanes, square: Lanes, twice: Lanes },
+    /// Even nodes over √((1 − ν)/2), linear between.
+    Table(Vec<Lanes>),
     /// Anything else, evaluated one by one.
     Other(Vec<PhaseFunction>),
 }
+
+/// Nodes of a tabulated phase function: at most degree 30 between them, 40 a wave.
+const TABLE_NODES: usize = 1024;
 
 impl PhaseLanes {
     pub fn new(phase: &[PhaseFunction]) -> Self {
@@ -109,6 +123,20 @@ impl PhaseLanes {
         PhaseLanes::Other(phase.to_vec())
     }
 
+    /// The Legendre series of phase functions up to a degree; the functions themselves where they end before.
+    fn cut_off(phase: &[PhaseFunction], degree: usize) -> Self {
+        let chi: Vec<Vec<f64>> = phase.iter().map(|p| p.legendre(degree + 1)).collect();
+        if chi.iter().all(|chi| chi[3..].iter().all(|c| c.abs() < 1e-9)) {
+            return PhaseLanes::new(phase);
+        }
+        let value = |k: usize| {
+            let x = k as f64 / (TABLE_NODES - 1) as f64;
+            let nu = 1.0 - 2.0 * x * x;
+            Lanes::from_f64(&chi.iter().map(|chi| series(&chi[..=degree], nu)).collect::<Vec<_>>())
+        };
+        PhaseLanes::Table((0..TABLE_NODES).map(value).collect())
+    }
+
     /// Values at the cosine of a scattering angle, 1/sr.
     #[inline(always)]
     pub fn value(&self, nu: f32) -> Lanes {
@@ -122,6 +150,13 @@ impl PhaseLanes {
                 }
                 out
             }
+            PhaseLanes::Table(nodes) => {
+                let half = 0.5 * (1.0 - nu);
+                let x = (if half > 0.0 { half } else { 0.0 }).sqrt() * (TABLE_NODES - 1) as f32;
+                let (node, t) = super::azimuth::node_and_place(x, TABLE_NODES);
+                let two = &nodes[node as usize..][..2];
+                two[0] * (1.0 - t) + two[1] * t
+            }
             PhaseLanes::Other(phase) => {
                 let mut out = Lanes::ZERO;
                 for (o, p) in out.0.iter_mut().zip(phase) {
@@ -131,6 +166,17 @@ impl PhaseLanes {
             }
         }
     }
+}
+
+/// Σ (2l+1)/4π χ_l P_l(ν)
+fn series(chi: &[f64], nu: f64) -> f64 {
+    let (mut before, mut now, mut sum) = (0.0, 1.0, 0.0);
+    for (l, c) in chi.iter().enumerate() {
+        let l = l as f64;
+        sum += (2.0 * l + 1.0) / (4.0 * PI) * c * now;
+        (before, now) = (now, ((2.0 * l + 1.0) * nu * now - l * before) / (l + 1.0));
+    }
+    sum
 }
 
 fn quadratic(p: &PhaseFunction) -> Option<[f64; 4]> {

@@ -75,6 +75,11 @@ impl Resolution {
 }
 
 impl Resolution {
+    /// Degree of a phase function whose product with any moment the first order's azimuths integrate exactly.
+    fn visible_degree(&self) -> usize {
+        (2 * self.first_azimuths - 1).saturating_sub(self.degree).max(self.degree)
+    }
+
     /// In thick air the field is looked up on more levels than hold the state: it bends over a unit of optical
     /// depth. Found by the energy balance, which at optical depths of 6 and 60 is better than 0.1 and 0.5 %.
     fn levels_in(&self, medium: &Medium) -> LevelCounts {
@@ -147,7 +152,8 @@ impl Solution {
         let mut report = Report { applications: 0, residual: Vec::new() };
         for first in (0..count).step_by(WIDTH) {
             let which: Vec<usize> = (first..count.min(first + WIDTH)).collect();
-            let optics = Optics::new(&medium.at_wavelengths(&which), resolution.degree);
+            let optics =
+                Optics::new(&medium.at_wavelengths(&which), resolution.degree, resolution.visible_degree());
             let sunlight = Sunlight::new(&columns, &geometry.levels, &optics.extinction);
             let operator = Operator::new(&geometry, &optics, &sunlight, &basis, resolution.azimuths);
             let (state, one) = sum_orders(&operator, resolution.first_azimuths, orders);

@@ -65,6 +65,7 @@ fn manifest(staging: &Staging) -> Manifest {
             matrices: BTreeMap::from([("xyz_to_rgb".into(), vec![vec![3.2404542, -1.5371385, -0.4985314]])]),
         },
         constants: BTreeMap::from([("ground_radius_m".into(), vec![11_266.7])]),
+        waters: Vec::new(),
         tables: vec![table(staging)],
         files: vec![OtherFile {
             file: "preview.png".into(),

@@ -1,0 +1,105 @@
+//! Water tables (Elek & Kmoch 2010, §4.3): light that comes up to the surface, for any depth, view and sun.
+//!
+//! Tables hold what the water does to light and leave out what the surface and the air do, so that they are
+//! smooth and that an engine may tilt the surface: radiance just below it over n², per unit of what enters. With
+//! F Fresnel's reflectance, E_sun and E_sky the irradiances of the surface, A the albedo of the bed,
+//!   L = (1 − F(mu)) [ (1 − e^{−κD}) ((1 − F(mu_s)) E_sun W(D, mu, mu_s) + E_sky S(D, mu))
+//!                     + U(D, mu) A B / (π − A r(D)) ]
+//!   B = (1 − F(mu_s)) E_sun W_b(D, mu_s) + E_sky S_b(D)
+//! is what leaves the water: the water's own light, and that of the bed with every bounce between bed, water and
+//! surface. W is `<name>`, S `<name>_sky`, U `<name>_seabed`, W_b `<name>_seabed_sun`; S_b and r are the rows of
+//! `<name>_seabed_depth`, E_sun and E_sky those of `irradiance`; F is in `fresnel`; κ is the constant
+//! `water_<name>_kappa_per_m`, which takes the steep rise of shallow water out of W and S.
+
+mod colour;
+mod fill;
+mod report;
+mod shared;
+mod underwater;
+
+use super::palette::Palette;
+use super::settings::Settings;
+use super::tables::Baked;
+use crate::error::Result;
+use crate::medium::{Medium, WaterMedium};
+use crate::preset::{Planet, Water};
+use crate::transport::slab::{Slab, Streams, Surface};
+use crate::transport::solve::Solution;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+pub use colour::spectra;
+pub use report::report;
+pub use shared::{DIFFUSE, DIRECT, LAZANYI, REFLECTED, TRANSMITTED, UNDERSIDE};
+
+/// Name of the layout and of its folder.
+pub const LAYOUT: &str = "water";
+/// The paper's size: depth, view, sun.
+pub const SIZE: [usize; 3] = [32, 64, 64];
+
+/// What is asked of waters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Waters {
+    pub list: Vec<Water>,
+    /// Texels of depth, view and sun.
+    pub size: [usize; 3],
+    /// Tables for observers under water too.
+    pub underwater: bool,
+    pub orders: crate::transport::slab::WaterOrders,
+}
+
+impl Default for Waters {
+    fn default() -> Self {
+        let orders = crate::transport::slab::WaterOrders::All;
+        Waters { list: Vec::new(), size: SIZE, underwater: false, orders }
+    }
+}
+
+/// Tables of all waters, and what the manifest has to say beside them.
+pub struct WaterTables {
+    pub tables: Vec<Baked>,
+    pub matrices: BTreeMap<String, Vec<Vec<f64>>>,
+    pub constants: BTreeMap<String, Vec<f64>>,
+    /// ΔE2000 of the colours of four wavelengths, by water.
+    pub colours: BTreeMap<String, super::palette::ColourError>,
+}
+
+/// The slabs of a medium, one a wavelength.
+pub fn slabs(medium: &WaterMedium) -> Vec<Slab> {
+    let one = |w: usize| Slab::new(medium, w, Surface { n: medium.refractive_index[w] }, Streams::TABLES);
+    (0..medium.wavelengths_nm.len()).into_par_iter().map(one).collect()
+}
+
+/// Fills the tables of all waters of a bake for a solved planet.
+pub fn tables(
+    planet: &Planet,
+    settings: &Settings,
+    medium: &Medium,
+    solution: &Solution,
+    palette: &Palette,
+) -> Result<WaterTables> {
+    let (nm, waters) = (palette.four_nm(), &settings.waters);
+    let mut out = WaterTables {
+        tables: shared::tables(&waters.list, medium, solution, palette),
+        matrices: BTreeMap::new(),
+        constants: BTreeMap::new(),
+        colours: BTreeMap::new(),
+    };
+    for water in &waters.list {
+        let media = water.medium(&nm);
+        let slabs = slabs(&media);
+        out.tables.extend(fill::tables(water, &media, &slabs, waters));
+        if waters.underwater {
+            out.tables.extend(underwater::tables(water, &media, &slabs, waters.orders));
+        }
+        let (matrix, error) = colour::fit(planet, water, medium, solution, palette)?;
+        let key = |what: &str| format!("water_{}_{what}", water.name);
+        out.matrices.insert(key("rgb_from_four"), matrix);
+        out.colours.insert(water.name.clone(), error);
+        out.constants.insert(key("seabed_albedo_at_four"), media.seabed_albedo.clone());
+        out.constants.insert(key("refractive_index_at_four"), media.refractive_index.clone());
+        out.constants.insert(key("kappa_per_m"), slabs.iter().map(fill::rise).collect());
+        out.constants.insert(key("largest_depth_m"), vec![water.largest_depth]);
+    }
+    Ok(out)
+}

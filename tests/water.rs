@@ -1,0 +1,12 @@
+//! Water: the slab solver against closed forms, published numbers and Monte Carlo, presets, bakes.
+
+#[path = "water/bakes.rs"]
+mod bakes;
+#[path = "water/closed_forms.rs"]
+mod closed_forms;
+#[path = "water/media.rs"]
+mod media;
+#[path = "water/monte_carlo.rs"]
+mod monte_carlo;
+#[path = "water/presets.rs"]
+mod presets;
