@@ -8,6 +8,13 @@ use std::path::Path;
 const PLANETS: &[(&str, &str)] = &[
     ("earth", include_str!("../../presets/planets/earth.json")),
     ("earth-paper", include_str!("../../presets/planets/earth-paper.json")),
+    ("earth-blog", include_str!("../../presets/planets/earth-blog.json")),
+    ("earth-sparse10", include_str!("../../presets/planets/earth-sparse10.json")),
+    ("earth-dense10", include_str!("../../presets/planets/earth-dense10.json")),
+    ("mars", include_str!("../../presets/planets/mars.json")),
+    ("venus", include_str!("../../presets/planets/venus.json")),
+    ("venus-cloudtop", include_str!("../../presets/planets/venus-cloudtop.json")),
+    ("titan", include_str!("../../presets/planets/titan.json")),
 ];
 
 /// Name and JSON text of every shipped water, in the order they are listed.
