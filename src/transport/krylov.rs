@@ -8,7 +8,7 @@
 
 use super::operator::Operator;
 use super::precondition::Preconditioner;
-use super::solve::{Report, largest_change, worst};
+use super::solve::{DARK, Report, largest_change, largest_mean, worst};
 use super::state::State;
 use crate::lanes::{Lanes, WIDTH};
 use rayon::prelude::*;
@@ -16,7 +16,7 @@ use rayon::prelude::*;
 /// Applications after which a solution that has not converged is left as it is; the residual tells.
 const MOST_APPLICATIONS: usize = 120;
 /// Directions that are kept: each costs two states.
-const MOST_KEPT: usize = 12;
+const MOST_KEPT: usize = 16;
 /// Applications after which the residual is no longer trusted to its recurrence in single precision.
 const TRUSTED: usize = 8;
 
@@ -96,7 +96,17 @@ fn next_change(operator: &Operator, first: &State, x: &State) -> State {
     change
 }
 
-/// What a deviation counts for: relative to the mean radiance of its place, however dark.
+/// 1 / (|v| + dark), and 0 where both are nothing.
+fn inverse(v: &Lanes, dark: Lanes) -> Lanes {
+    let mut out = Lanes::ZERO;
+    for w in 0..WIDTH {
+        let scale = v[w].abs() + dark[w];
+        out[w] = if scale > 0.0 { 1.0 / scale } else { 0.0 };
+    }
+    out
+}
+
+/// What a deviation counts for: relative to the mean radiance of its place.
 struct Weights {
     /// `[level][sun node]`
     nodes: Vec<Lanes>,
@@ -104,24 +114,14 @@ struct Weights {
 }
 
 impl Weights {
-    /// A millionth of the brightest light counts as darkness.
     fn new(x: &State) -> Self {
-        let means = || x.moments.iter().step_by(x.terms);
-        let mut brightest = Lanes::ZERO;
-        for m in means() {
-            for w in 0..WIDTH {
-                brightest[w] = if m[w] > brightest[w] { m[w] } else { brightest[w] };
-            }
-        }
-        let weight = |v: &Lanes| {
-            let mut out = Lanes::ZERO;
-            for w in 0..WIDTH {
-                let scale = v[w].abs() + 1e-6 * brightest[w];
-                out[w] = if scale > 0.0 { 1.0 / scale } else { 0.0 };
-            }
-            out
-        };
-        Weights { nodes: means().map(weight).collect(), ground: x.ground.iter().map(weight).collect() }
+        let stride = x.suns * x.terms;
+        let nodes = x.moments.chunks_exact(stride).flat_map(|level| {
+            let dark = largest_mean(level, x.terms) * DARK;
+            level.iter().step_by(x.terms).map(move |m| inverse(m, dark))
+        });
+        let ground = largest_mean(&x.ground, 1) * DARK;
+        Weights { nodes: nodes.collect(), ground: x.ground.iter().map(|g| inverse(g, ground)).collect() }
     }
 
     /// Weighted scalar product, wavelength by wavelength; summed level by level in a fixed order.

@@ -94,18 +94,34 @@ fn spacing(medium: &Medium) -> Vec<f64> {
             }
         }
     }
-    let depth: Vec<f64> = (0..STEPS).map(|k| largest_extinction(medium, middle(k)) * dz).collect();
-    let total_depth: f64 = depth.iter().sum();
+    let (depth, largest) = mean_depth(medium, middle, dz);
     // In thick air the levels follow optical depth: a share that grows with it, up to nine tenths.
-    let share = 0.2 + 0.7 * total_depth / (total_depth + 10.0);
+    let share = 0.2 + 0.7 * largest / (largest + 10.0);
     let sum: f64 = weight.iter().sum();
     let mut cumulative = vec![0.0; STEPS + 1];
     for k in 0..STEPS {
-        let by_depth = if total_depth > 0.0 { share * depth[k] / total_depth } else { 0.0 };
-        cumulative[k + 1] = cumulative[k] + (1.0 - share) * weight[k] / sum + by_depth;
+        cumulative[k + 1] = cumulative[k] + (1.0 - share) * weight[k] / sum + share * depth[k];
     }
     let end = cumulative[STEPS];
     cumulative.iter().map(|c| c / end).collect()
+}
+
+/// Optical depth of each step as a share of the whole, in the mean over wavelengths, so that a cloud counts that is
+/// thin beside the gas at one wavelength and thick at another; and the largest whole.
+fn mean_depth(medium: &Medium, middle: impl Fn(usize) -> f64, dz: f64) -> (Vec<f64>, f64) {
+    let (mut mean, mut largest) = (vec![0.0; STEPS], 0.0f64);
+    let count = medium.wavelengths_nm.len();
+    for w in 0..count {
+        let extinction =
+            |z: f64| medium.constituents.iter().map(|c| c.extinction(w) * c.density.at(z)).sum::<f64>();
+        let depth: Vec<f64> = (0..STEPS).map(|k| extinction(middle(k)) * dz).collect();
+        let whole: f64 = depth.iter().sum();
+        largest = largest.max(whole);
+        if whole > 0.0 {
+            mean.iter_mut().zip(&depth).for_each(|(m, d)| *m += d / whole / count as f64);
+        }
+    }
+    (mean, largest)
 }
 
 fn largest_extinction(medium: &Medium, altitude: f64) -> f64 {

@@ -81,13 +81,14 @@ impl Resolution {
     }
 
     /// In thick air the field is looked up on more levels than hold the state: it bends over a unit of optical
-    /// depth. Found by the energy balance, which at optical depths of 6 and 60 is better than 0.1 and 0.5 %.
+    /// depth. Rules found by the energy balance, which is within 0.7 % for the Earth's air at up to 100 times its density.
     fn levels_in(&self, medium: &Medium) -> LevelCounts {
         const THIN: f64 = 4.0;
         let depth = medium.vertical_optical_depth().into_iter().fold(0.0, f64::max);
         let refinement = ((depth / THIN).sqrt().ceil().clamp(1.0, 8.0) as usize).max(self.levels.refinement);
         let cuts = self.levels.cuts.div_ceil(refinement);
-        LevelCounts { refinement, cuts, ..self.levels }
+        let more = 1.0 + ((depth - THIN) / 60.0).clamp(0.0, 1.0);
+        LevelCounts { coarse: (self.levels.coarse as f64 * more) as usize, refinement, cuts }
     }
 }
 
@@ -210,25 +211,37 @@ pub fn worst(residual: &[f64]) -> f64 {
     residual.iter().fold(0.0, |a, &r| if r.is_nan() { f64::INFINITY } else { a.max(r) })
 }
 
-/// Per wavelength, the largest change of the mean radiance anywhere, relative to its value there (and to a
-/// millionth of the largest value, below which it is dark).
+/// Mean radiance of a level, as a share of its largest under any sun, below which it counts as dark.
+pub const DARK: f32 = 1e-4;
+
+/// Per wavelength, the largest change of the mean radiance anywhere, relative to its value there, or to that of
+/// darkness.
 pub fn largest_change(change: &State, state: &State, count: usize) -> Vec<f64> {
-    let mut brightest = Lanes::ZERO;
-    let means = state.moments.iter().step_by(state.terms);
-    for m in means.clone() {
-        for w in 0..WIDTH {
-            brightest[w] = if m[w] > brightest[w] { m[w] } else { brightest[w] };
-        }
-    }
     let mut out = vec![0.0f64; count];
-    for (c, m) in change.moments.iter().step_by(state.terms).zip(means) {
-        for (w, out) in out.iter_mut().enumerate() {
-            let scale = m[w].abs() + 1e-6 * brightest[w];
-            if scale > 0.0 {
-                let ratio = f64::from(c[w].abs() / scale);
-                *out = if ratio > *out || ratio.is_nan() { ratio } else { *out };
+    let stride = state.suns * state.terms;
+    for (change, state_level) in change.moments.chunks_exact(stride).zip(state.moments.chunks_exact(stride)) {
+        let dark = largest_mean(state_level, state.terms) * DARK;
+        let means = change.iter().zip(state_level).step_by(state.terms);
+        for (c, m) in means {
+            for (w, out) in out.iter_mut().enumerate() {
+                let scale = m[w].abs() + dark[w];
+                if scale > 0.0 {
+                    let ratio = f64::from(c[w].abs() / scale);
+                    *out = if ratio > *out || ratio.is_nan() { ratio } else { *out };
+                }
             }
         }
     }
     out
+}
+
+/// The largest mean radiance of a level.
+pub fn largest_mean(level: &[Lanes], terms: usize) -> Lanes {
+    let mut largest = Lanes::ZERO;
+    for m in level.iter().step_by(terms) {
+        for w in 0..WIDTH {
+            largest[w] = if m[w] > largest[w] { m[w] } else { largest[w] };
+        }
+    }
+    largest
 }
