@@ -59,7 +59,7 @@ impl Sky {
         let folder = if bake.is_dir() { bake } else { bake.parent().unwrap_or(Path::new(".")) };
         let mut pictures = BTreeMap::new();
         for table in manifest.tables.iter().filter(|t| t.layout == layout) {
-            pictures.insert(table.name.clone(), exr::from_exr(&folder.join(&table.file))?);
+            pictures.insert(table.name.clone(), picture(folder, table)?);
         }
         Sky::new(bake, manifest, layout, &pictures)
     }
@@ -102,6 +102,20 @@ impl Sky {
             Sky::Elek2010(sky) => sky.radiance(point, component, AerosolPhase::Preset),
         }
     }
+}
+
+/// Reads the file of a table.
+///
+/// # Errors
+/// `File` for a file that is missing, damaged, or another than the one that was baked.
+fn picture(folder: &Path, table: &Table) -> Result<Atlas> {
+    let path = folder.join(&table.file);
+    let bytes = std::fs::read(&path).map_err(|e| Error::reading(&path, e))?;
+    let atlas = exr::from_exr_bytes(&path, &bytes)?;
+    if blake3::hash(&bytes).to_hex().as_str() != table.blake3 {
+        return Err(Error::file(&path, "not the file that was baked (bake.json has another BLAKE3)"));
+    }
+    Ok(atlas)
 }
 
 /// Where a layout's tables come from.

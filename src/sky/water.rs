@@ -3,8 +3,8 @@
 use super::volume::Texels;
 use super::{Component, multiply};
 use crate::error::{Error, Result};
+use crate::export::Atlas;
 use crate::export::manifest::{Manifest, Table};
-use crate::export::{Atlas, exr};
 use crate::table::{EvenCosine, Texel, WaterAxes, texel};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -79,7 +79,7 @@ impl WaterSky {
         let folder = if bake.is_dir() { bake } else { bake.parent().unwrap_or(Path::new(".")) };
         let mut pictures = BTreeMap::new();
         for table in manifest.tables.iter().filter(|t| t.layout == LAYOUT) {
-            pictures.insert(table.name.clone(), exr::from_exr(&folder.join(&table.file))?);
+            pictures.insert(table.name.clone(), super::picture(folder, table)?);
         }
         WaterSky::new(bake, manifest, name, &pictures)
     }

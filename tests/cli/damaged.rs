@@ -45,6 +45,22 @@ fn truncated_tables() {
     found_by_verify(TABLE, "truncated", |bake| truncate(&bake.join(TABLE), 0.9999));
 }
 
+/// A table of the right shape that belongs elsewhere: nothing in it is wrong but its bytes.
+#[test]
+fn a_table_of_the_same_shape_in_the_place_of_another() {
+    let (_dir, bake) = earth_to_damage();
+    let mut tables: Vec<_> = fs::read_dir(bake.join("compact")).unwrap().map(|e| e.unwrap().path()).collect();
+    tables.retain(|p| p.file_name().unwrap().to_str().unwrap().starts_with("single_"));
+    tables.sort();
+    let [first, second, ..] = tables.as_slice() else { panic!("{tables:?}") };
+    fs::copy(first, second).unwrap();
+    let points = bake.join("views.csv");
+    fs::write(&points, VIEWS).unwrap();
+    let done = tyndall(&["sample".as_ref(), bake.as_os_str(), "--points".as_ref(), points.as_os_str()]);
+    assert_eq!((done.code, done.out.as_str(), done.err.lines().count()), (Some(2), "", 1), "{}", done.err);
+    assert!(done.err.contains("not the file that was baked"), "{}", done.err);
+}
+
 /// A picture from another program, a text with the name of a picture, a folder, nothing.
 #[test]
 fn files_of_another_kind() {

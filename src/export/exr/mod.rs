@@ -11,6 +11,6 @@ mod read;
 mod spectral;
 mod write;
 
-pub use read::{from_exr, from_exr_bytes};
+pub use read::from_exr_bytes;
 pub use spectral::{Spectral, spectral_attributes, spectral_channel, wavelength_of_channel};
 pub use write::to_exr_bytes;

@@ -17,19 +17,13 @@ use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::path::Path;
 
-/// Why a file cannot be read; [`from_exr`] adds its name.
+/// Why a file cannot be read; [`from_exr_bytes`] adds the file's name.
 type Read<T> = std::result::Result<T, String>;
 
-/// The atlas in the EXR file at `path`, its channels in alphabetical order.
+/// The atlas in the bytes of an EXR file, its channels in alphabetical order; `path` is for messages only.
 ///
 /// # Errors
-/// `File`, with a reason of one line, for a file that is missing, truncated, damaged, or not such an atlas.
-pub fn from_exr(path: &Path) -> Result<Atlas> {
-    let bytes = std::fs::read(path).map_err(|e| Error::reading(path, e))?;
-    from_exr_bytes(path, &bytes)
-}
-
-/// As [`from_exr`], for bytes already in memory; `path` is for messages only.
+/// `File`, with a reason of one line, for bytes that are truncated, damaged, or not such an atlas.
 pub fn from_exr_bytes(path: &Path, bytes: &[u8]) -> Result<Atlas> {
     let name = path.display().to_string();
     parse(name, bytes).map_err(|reason| Error::file(path, reason))
