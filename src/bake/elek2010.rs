@@ -196,7 +196,7 @@ fn scattering(
         let light = direct[n / (views * suns * azimuths) * suns + n / azimuths % suns];
         all += f64::from(t[3]);
         if light > 0.0 {
-            t[3] = (4.0 * PI * f64::from(t[3]) / light).min(65504.0) as f32;
+            t[3] = (4.0 * PI * f64::from(t[3]) / light).clamp(0.0, 65504.0) as f32;
         } else {
             lost += f64::from(t[3]);
             t[3] = 0.0;
