@@ -14,8 +14,9 @@ pub struct Levels {
     pub coarse: Vec<f64>,
     /// For each radius of the field, its number in the fine list.
     pub field_index: Vec<usize>,
-    /// Intervals of the field for each of the state's.
-    refinement: usize,
+    /// For each radius of the field, the first of the state's that it lies between, and their weights: cubic in
+    /// the levels' number, in which the state is smoother than in height.
+    pub between: Vec<(usize, Vec<f32>)>,
 }
 
 /// Numbers of levels.
@@ -55,21 +56,20 @@ impl Levels {
         let coarse: Vec<f64> = field.iter().copied().step_by(refinement).collect();
         insert_kinks(&mut fine, medium);
         let field_index = field.iter().map(|c| fine.partition_point(|f| f < c)).collect();
-        Levels { fine, field, coarse, field_index, refinement }
+        let between = (0..field.len()).map(|k| between(k, refinement, coarse.len())).collect();
+        Levels { fine, field, coarse, field_index, between }
     }
+}
 
-    /// The state's levels, as the first one and weights, that a level of the field lies between: cubic in the
-    /// levels' number, in which the state is smoother than in height.
-    pub fn between(&self, level: usize) -> (usize, Vec<f32>) {
-        let (below, part) = (level / self.refinement, level % self.refinement);
-        if part == 0 {
-            return (below, vec![1.0]);
-        }
-        let first = below.saturating_sub(1);
-        let last = (below + 2).min(self.coarse.len() - 1);
-        let place = part as f64 / self.refinement as f64;
-        (first, lagrange(below - first, last - below, place))
+/// Weights of the state's levels at a level of the field, with the number of the first of them.
+fn between(level: usize, refinement: usize, count: usize) -> (usize, Vec<f32>) {
+    let (below, part) = (level / refinement, level % refinement);
+    if part == 0 {
+        return (below, vec![1.0]);
     }
+    let first = below.saturating_sub(1);
+    let last = (below + 2).min(count - 1);
+    (first, lagrange(below - first, last - below, part as f64 / refinement as f64))
 }
 
 /// The interval of a rising list that holds `r`, and the place of `r` in it.

@@ -50,8 +50,8 @@ impl Preconditioner {
                     let p = operator.basis.polynomials(f64::from(s.mu));
                     for (n, share) in [(s.level as usize, 1.0 - s.place), (s.level as usize + 1, s.place)] {
                         if share > 0.0 {
-                            let (first, between) = levels.between(n);
-                            for (level, part) in (first..).zip(between) {
+                            let (first, between) = &levels.between[n];
+                            for (level, part) in (*first..).zip(between) {
                                 for (k, &t) in self.terms.iter().enumerate() {
                                     row[level * count + k] +=
                                         *weight * sources[n][t] * (share * part * p[t] as f32);

@@ -72,9 +72,7 @@ impl Resolution {
         sunlight_nodes: 512,
         degree: 12,
     };
-}
 
-impl Resolution {
     /// Degree of a phase function whose product with any moment the first order's azimuths integrate exactly.
     fn visible_degree(&self) -> usize {
         (2 * self.first_azimuths - 1).saturating_sub(self.degree).max(self.degree)

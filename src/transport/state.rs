@@ -74,8 +74,7 @@ impl State {
         let stride = self.suns * self.terms;
         let mut values = Vec::with_capacity(levels.field.len() * stride);
         let mut sums = vec![Lanes::ZERO; stride];
-        for level in 0..levels.field.len() {
-            let (first, weights) = levels.between(level);
+        for (level, (first, weights)) in levels.between.iter().enumerate() {
             sums.fill(Lanes::ZERO);
             for (weight, from) in weights.iter().zip(self.moments[first * stride..].chunks_exact(stride)) {
                 for (sum, moment) in sums.iter_mut().zip(from) {
