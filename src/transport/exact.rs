@@ -64,7 +64,7 @@ impl Solution {
     }
 
     /// Light of the ground that arrives at radius `r` along a ray of optical depth `depth` that meets it.
-    pub(super) fn ground_light(
+    pub fn ground_light(
         &self,
         batch: &Batch,
         r: f64,
