@@ -104,9 +104,24 @@ pub fn solver(medium: &Medium, solution: &Solution) -> Value {
     Value::Object(out)
 }
 
+/// Colours of the weights: ΔE2000 on skies held out of their fits, and, where there is a truth to look at, what
+/// four wavelengths lose in each region.
+pub fn colours(palette: &Palette, truths: Option<&[Truth]>) -> Value {
+    let of =
+        |e: &ColourError| json!({ "median": digits(e.median), "p95": digits(e.p95), "max": digits(e.worst) });
+    let mut out = json!({
+        "all_wavelengths_delta_e_2000": of(&palette.error),
+        "four_wavelengths_delta_e_2000": of(&palette.four_error),
+    });
+    if let Some(truths) = truths {
+        out["four_wavelengths_by_region"] = four_wavelengths(palette, truths);
+    }
+    out
+}
+
 /// What colour loses to the choice of four wavelengths, tables apart, by region of a medium's truth: relative
 /// RGB and ΔE2000, against all wavelengths of the bake.
-pub fn four_wavelengths(palette: &Palette, truths: &[Truth]) -> Value {
+fn four_wavelengths(palette: &Palette, truths: &[Truth]) -> Value {
     let mut out = Map::new();
     for truth in truths {
         let (mut relative, mut felt) = (Vec::new(), Vec::new());
