@@ -1,8 +1,10 @@
 //! From a planet to the bytes of every file: solve, choose colours, fill every layout, encode, report.
 
 pub mod compact;
+mod describe;
 pub mod elek2010;
 mod extinction;
+mod files;
 mod literal;
 pub mod palette;
 mod pictures;

@@ -1,12 +1,18 @@
 //! From spectra to colour for one planet: weights for all its wavelengths, and for the four that the compact
 //! layout keeps.
 
-use super::skies::Transfers;
+use super::skies::Skies;
 use crate::error::Result;
 use crate::spectrum::{
-    ColourSpace, DEFAULT_RIDGE, Reconstruction, Spectrum, delta_e_2000_scaled, fit_weights, hat_weights,
-    multiply, weighted,
+    ColourSpace, DEFAULT_RIDGE, Reconstruction, Spectrum, delta_e_2000_scaled, fit_weights, fit_weights_by,
+    hat_weights, multiply, weighted,
 };
+
+/// Share with which twilight counts in the choice of four wavelengths and their weights. Four cannot hold day
+/// and dusk alike: equal shares cost the day a percent of its light for what nobody sees in the dark.
+const TWILIGHT_SHARE: f64 = 0.03;
+/// Cosine of the sun's zenith angle (17 degrees up) from which it is day.
+const DAY: f64 = 0.3;
 
 /// Colour weights of a bake, and what they cost.
 pub struct Palette {
@@ -35,29 +41,34 @@ pub struct ColourError {
 
 impl Palette {
     /// Fits on one sample of skies and judges on another. The reference is the log-spline reconstruction of
-    /// each spectrum times the star's irradiance at 1 nm.
+    /// each spectrum times the star's irradiance at 1 nm. All wavelengths are fitted as CIELAB sees errors; the
+    /// four are chosen and fitted for the least error of RGB relative to the sky's own, by day above all.
     pub fn fit(
         wavelengths_nm: &[f64],
         irradiance: &Spectrum,
         space: ColourSpace,
-        training: &Transfers,
-        held_out: &Transfers,
+        training: &Skies,
+        held_out: &Skies,
     ) -> Result<Self> {
         let reconstruction = Reconstruction::new(wavelengths_nm, irradiance);
-        let colours = |skies: &Transfers| skies.iter().map(|t| reconstruction.xyz(t)).collect::<Vec<_>>();
+        let colours =
+            |skies: &Skies| skies.transfers.iter().map(|t| reconstruction.xyz(t)).collect::<Vec<_>>();
         let (targets, judges) = (colours(training), colours(held_out));
         let prior = hat_weights(wavelengths_nm, irradiance);
-        let weights = fit_weights(training, &targets, &prior, DEFAULT_RIDGE)?;
-        let four = choose(wavelengths_nm.len(), training, &targets);
-        let pick = |skies: &Transfers| -> Transfers {
-            skies.iter().map(|t| four.iter().map(|&w| t[w]).collect()).collect()
-        };
+        let weights = fit_weights(&training.transfers, &targets, &prior, DEFAULT_RIDGE)?;
+        let factors = factors(space, &targets, &training.mu_s);
+        let four = Sums::new(space, &training.transfers, &targets, &factors).best(wavelengths_nm.len());
         let few: Vec<f64> = four.iter().map(|&w| wavelengths_nm[w]).collect();
-        let four_prior = hat_weights(&few, irradiance);
-        let four_weights = fit_weights(&pick(training), &targets, &four_prior, DEFAULT_RIDGE)?;
+        let four_weights = fit_weights_by(
+            &training.at(&four),
+            &targets,
+            &factors.iter().map(|&f| [f; 3]).collect::<Vec<_>>(),
+            &hat_weights(&few, irradiance),
+            DEFAULT_RIDGE,
+        )?;
         Ok(Palette {
-            error: judge(&weights, held_out, &judges),
-            four_error: judge(&four_weights, &pick(held_out), &judges),
+            error: judge(&weights, &held_out.transfers, &judges),
+            four_error: judge(&four_weights, &held_out.at(&four), &judges),
             wavelengths_nm: wavelengths_nm.to_vec(),
             weights,
             four,
@@ -65,6 +76,17 @@ impl Palette {
             space,
             star_xyz: reconstruction.sum(|_| 1.0),
         })
+    }
+
+    /// XYZ of a spectrum at all wavelengths of the bake (radiance over solar irradiance), cd/m² for 1/sr.
+    pub fn xyz(&self, light: &[f64]) -> [f64; 3] {
+        weighted(&self.weights, light)
+    }
+
+    /// What the four wavelengths alone make of the same spectrum.
+    pub fn xyz_of_four(&self, light: &[f64]) -> [f64; 3] {
+        let four: Vec<f64> = self.four.iter().map(|&w| light[w]).collect();
+        weighted(&self.four_weights, &four)
     }
 
     /// Linear RGB per radiance over solar irradiance, a row a wavelength, cd/m² sr.
@@ -83,8 +105,8 @@ impl Palette {
     }
 }
 
-fn judge(weights: &[[f64; 3]], skies: &Transfers, references: &[[f64; 3]]) -> ColourError {
-    let mut errors: Vec<f64> = skies
+fn judge(weights: &[[f64; 3]], transfers: &[Vec<f64>], references: &[[f64; 3]]) -> ColourError {
+    let mut errors: Vec<f64> = transfers
         .iter()
         .zip(references)
         .filter(|(_, r)| r[1] > 0.0)
@@ -95,29 +117,18 @@ fn judge(weights: &[[f64; 3]], skies: &Transfers, references: &[[f64; 3]]) -> Co
     ColourError { median: at(0.5), p95: at(0.95), worst: at(1.0) }
 }
 
-/// The four wavelengths whose best weights leave the smallest sum of squared relative errors of XYZ.
-fn choose(count: usize, skies: &Transfers, targets: &[[f64; 3]]) -> Vec<usize> {
-    if count <= 4 {
-        return (0..count).collect();
-    }
-    let sums = Sums::new(count, skies, targets);
-    let mut best = (f64::INFINITY, vec![0, 1, 2, 3]);
-    for a in 0..count {
-        for b in a + 1..count {
-            for c in b + 1..count {
-                for d in c + 1..count {
-                    let left = sums.residual(&[a, b, c, d]);
-                    if left < best.0 {
-                        best = (left, vec![a, b, c, d]);
-                    }
-                }
-            }
-        }
-    }
-    best.1
+/// By how much the error of each sky counts: relative to the length of its RGB, times its share in the fit, which
+/// falls from 1 by day to that of twilight as the sun sets.
+fn factors(space: ColourSpace, xyz: &[[f64; 3]], mu_s: &[f64]) -> Vec<f64> {
+    let matrix = space.from_xyz();
+    let factor = |(xyz, mu_s): (&[f64; 3], &f64)| {
+        let length = multiply(&matrix, *xyz).iter().map(|v| v * v).sum::<f64>().sqrt();
+        if xyz[1] > 0.0 && length > 0.0 { (mu_s / DAY).clamp(TWILIGHT_SHARE, 1.0) / length } else { 0.0 }
+    };
+    xyz.iter().zip(mu_s).map(factor).collect()
 }
 
-/// Normal equations of all wavelengths, from which those of any four are picked.
+/// Normal equations of RGB from all wavelengths, from which those of any four are picked.
 struct Sums {
     gram: Vec<Vec<f64>>,
     right: Vec<[f64; 3]>,
@@ -125,27 +136,52 @@ struct Sums {
 }
 
 impl Sums {
-    fn new(count: usize, skies: &Transfers, targets: &[[f64; 3]]) -> Self {
+    fn new(space: ColourSpace, transfers: &[Vec<f64>], xyz: &[[f64; 3]], factors: &[f64]) -> Self {
+        let matrix = space.from_xyz();
+        let count = transfers.first().map_or(0, Vec::len);
         let mut s =
             Sums { gram: vec![vec![0.0; count]; count], right: vec![[0.0; 3]; count], squares: [0.0; 3] };
-        for (t, xyz) in skies.iter().zip(targets).filter(|(_, xyz)| xyz[1] > 0.0) {
-            let scale = 1.0 / xyz[1];
+        for ((t, xyz), factor) in transfers.iter().zip(xyz).zip(factors) {
+            let rgb = multiply(&matrix, *xyz);
+            let square = factor * factor;
             for i in 0..count {
                 for j in 0..count {
-                    s.gram[i][j] += t[i] * t[j] * scale * scale;
+                    s.gram[i][j] += t[i] * t[j] * square;
                 }
                 for c in 0..3 {
-                    s.right[i][c] += t[i] * xyz[c] * scale * scale;
+                    s.right[i][c] += t[i] * rgb[c] * square;
                 }
             }
             for c in 0..3 {
-                s.squares[c] += xyz[c] * xyz[c] * scale * scale;
+                s.squares[c] += rgb[c] * rgb[c] * square;
             }
         }
         s
     }
 
-    /// What the best weights of four wavelengths leave, summed over X, Y and Z.
+    /// The four of `count` wavelengths whose best weights leave the smallest sum of squared errors; all of them
+    /// where there are no more than four, the first four where there is no sky to choose by.
+    fn best(&self, count: usize) -> Vec<usize> {
+        let mut best = (f64::INFINITY, (0..count.min(4)).collect());
+        if count <= 4 || self.gram.is_empty() {
+            return best.1;
+        }
+        for a in 0..count {
+            for b in a + 1..count {
+                for c in b + 1..count {
+                    for d in c + 1..count {
+                        let left = self.residual(&[a, b, c, d]);
+                        if left < best.0 {
+                            best = (left, vec![a, b, c, d]);
+                        }
+                    }
+                }
+            }
+        }
+        best.1
+    }
+
+    /// What the best weights of four wavelengths leave, summed over R, G and B.
     fn residual(&self, which: &[usize; 4]) -> f64 {
         let mut a = [[0.0; 7]; 4];
         for (i, row) in a.iter_mut().enumerate() {

@@ -5,7 +5,7 @@ use crate::medium::Medium;
 use crate::points::Point;
 use crate::quality::{Distribution, REGIONS, colour_error, digits, relative_errors, views};
 use crate::sky::{AerosolPhase, Component, Sky};
-use crate::spectrum::multiply;
+use crate::spectrum::{delta_e_2000_scaled, multiply};
 use crate::transport::balance::balance;
 use crate::transport::solve::{Orders, Solution, worst};
 use crate::transport::view::View;
@@ -77,13 +77,11 @@ pub fn elek2010(sky: &Sky, palette: &Palette, truths: &[Truth], phase: AerosolPh
 
 /// Linear RGB over the star's illuminance.
 fn rgb(palette: &Palette, light: &[f64]) -> [f64; 3] {
-    let mut xyz = [0.0; 3];
-    for (v, w) in light.iter().zip(&palette.weights) {
-        for c in 0..3 {
-            xyz[c] += v * w[c] / palette.star_xyz[1];
-        }
-    }
-    multiply(&palette.space.from_xyz(), xyz)
+    rgb_of(palette, palette.xyz(light))
+}
+
+fn rgb_of(palette: &Palette, xyz: [f64; 3]) -> [f64; 3] {
+    multiply(&palette.space.from_xyz(), xyz.map(|v| v / palette.star_xyz[1]))
 }
 
 /// What the solver says of one medium: orders, residual, energy balance.
@@ -103,6 +101,41 @@ pub fn solver(medium: &Medium, solution: &Solution) -> Value {
         }
     }
     out.insert("residual".into(), json!(digits(residual)));
+    Value::Object(out)
+}
+
+/// Colours of the weights: ΔE2000 on skies held out of their fits, and, where there is a truth to look at, what
+/// four wavelengths lose in each region.
+pub fn colours(palette: &Palette, truths: Option<&[Truth]>) -> Value {
+    let of =
+        |e: &ColourError| json!({ "median": digits(e.median), "p95": digits(e.p95), "max": digits(e.worst) });
+    let mut out = json!({
+        "all_wavelengths_delta_e_2000": of(&palette.error),
+        "four_wavelengths_delta_e_2000": of(&palette.four_error),
+    });
+    if let Some(truths) = truths {
+        out["four_wavelengths_by_region"] = four_wavelengths(palette, truths);
+    }
+    out
+}
+
+/// What colour loses to the choice of four wavelengths, tables apart, by region of a medium's truth: relative
+/// RGB and ΔE2000, against all wavelengths of the bake.
+fn four_wavelengths(palette: &Palette, truths: &[Truth]) -> Value {
+    let mut out = Map::new();
+    for truth in truths {
+        let (mut relative, mut felt) = (Vec::new(), Vec::new());
+        for (_, light) in truth.views.iter().filter(|(_, light)| light.iter().any(|&v| v > DARK)) {
+            let (found, wanted) = (palette.xyz_of_four(light), palette.xyz(light));
+            relative.push(colour_error(rgb_of(palette, found), rgb_of(palette, wanted)));
+            felt.push(delta_e_2000_scaled(wanted, found));
+        }
+        let pair = json!({
+            "rgb": Distribution::of(relative).json(),
+            "delta_e_2000": Distribution::of(felt).json(),
+        });
+        out.insert(truth.region.to_string(), pair);
+    }
     Value::Object(out)
 }
 

@@ -17,7 +17,7 @@ pub use observer::{LUMINOUS_EFFICACY, OBSERVER_RANGE, Observer, chromaticity, y_
 pub use planck::planck_law;
 pub use reconstruct::Reconstruction;
 pub use spline::LogSpline;
-pub use weights::{DEFAULT_RIDGE, fit_weights, hat_weights, weighted};
+pub use weights::{DEFAULT_RIDGE, fit_weights, fit_weights_by, hat_weights, weighted};
 
 /// First and last wavelength of every planet's spectra, nm.
 pub const RANGE: (f64, f64) = (380.0, 780.0);

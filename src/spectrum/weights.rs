@@ -52,16 +52,40 @@ pub fn fit_weights(
     prior: &[[f64; 3]],
     ridge: f64,
 ) -> Result<Vec<[f64; 3]>> {
+    let factor = |value: f64, y: f64| {
+        if value > 0.0 && y > 0.0 {
+            1.0 / (libm::cbrt(value) * libm::cbrt(value) * libm::cbrt(y))
+        } else {
+            0.0
+        }
+    };
+    let factors: Vec<[f64; 3]> = xyz.iter().map(|v| v.map(|c| factor(c, v[1]))).collect();
+    fit_weights_by(transfers, xyz, &factors, prior, ridge)
+}
+
+/// The same where the error of each sky's X, Y and Z is multiplied by a factor of one's own (K × 3) before it is
+/// squared; 0 leaves that value out.
+pub fn fit_weights_by(
+    transfers: &[Vec<f64>],
+    xyz: &[[f64; 3]],
+    factors: &[[f64; 3]],
+    prior: &[[f64; 3]],
+    ridge: f64,
+) -> Result<Vec<[f64; 3]>> {
     let n = prior.len();
-    if transfers.len() != xyz.len() || transfers.iter().any(|t| t.len() != n) {
-        return Err(Error::Argument(format!("colour fit: every sky needs {n} transfers and one XYZ")));
+    let skies = transfers.len();
+    if xyz.len() != skies || factors.len() != skies || transfers.iter().any(|t| t.len() != n) {
+        return Err(Error::Argument(format!(
+            "colour fit: every sky needs {n} transfers, one XYZ and its factors"
+        )));
     }
-    if !transfers.iter().flatten().chain(xyz.iter().flatten()).all(|v| v.is_finite()) {
+    let colours = xyz.iter().chain(factors).flatten();
+    if !transfers.iter().flatten().chain(colours).all(|v| v.is_finite()) {
         return Err(Error::NotFinite { table: "colour fit".into(), place: "a training sky".into() });
     }
     let mut weights = prior.to_vec();
     for channel in 0..3 {
-        let correction = fit_channel(transfers, xyz, prior, ridge, channel);
+        let correction = fit_channel(transfers, xyz, factors, prior, ridge, channel);
         for (row, c) in weights.iter_mut().zip(correction) {
             row[channel] += c;
         }
@@ -73,23 +97,23 @@ pub fn fit_weights(
 fn fit_channel(
     transfers: &[Vec<f64>],
     xyz: &[[f64; 3]],
+    factors: &[[f64; 3]],
     prior: &[[f64; 3]],
     ridge: f64,
     channel: usize,
 ) -> Vec<f64> {
     let n = prior.len();
     let (mut normal, mut right) = (vec![vec![0.0; n]; n], vec![0.0; n]);
-    for (transfer, reference) in transfers.iter().zip(xyz) {
-        let (value, y) = (reference[channel], reference[1]);
-        if y <= 0.0 || value <= 0.0 {
+    for ((transfer, reference), factors) in transfers.iter().zip(xyz).zip(factors) {
+        let factor = factors[channel];
+        if factor <= 0.0 {
             continue;
         }
-        let scale = 1.0 / (libm::cbrt(value) * libm::cbrt(value) * libm::cbrt(y));
-        let left_over = (value - weighted(prior, transfer)[channel]) * scale;
+        let left_over = (reference[channel] - weighted(prior, transfer)[channel]) * factor;
         for i in 0..n {
-            right[i] += transfer[i] * scale * left_over;
+            right[i] += transfer[i] * factor * left_over;
             for j in 0..=i {
-                normal[i][j] += transfer[i] * scale * transfer[j] * scale;
+                normal[i][j] += transfer[i] * factor * transfer[j] * factor;
             }
         }
     }

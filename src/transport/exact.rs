@@ -64,15 +64,7 @@ impl Solution {
     }
 
     /// Light of the ground that arrives at radius `r` along a ray of optical depth `depth` that meets it.
-    pub(super) fn ground_light(
-        &self,
-        batch: &Batch,
-        r: f64,
-        mu: f64,
-        mu_s: f64,
-        nu: f64,
-        depth: Lanes,
-    ) -> Lanes {
+    pub fn ground_light(&self, batch: &Batch, r: f64, mu: f64, mu_s: f64, nu: f64, depth: Lanes) -> Lanes {
         let view = View { r, mu, mu_s, nu, hits_ground: true };
         let track = Track::new(&view);
         (depth * -1.0).exp()

@@ -1,0 +1,81 @@
+//! What `bake.json` says before anything is measured: settings, colour, constants, tables.
+
+use super::compact;
+use super::files::Files;
+use super::palette::Palette;
+use super::settings::Settings;
+use super::water::WaterTables;
+use crate::export::manifest::{Colour, GridKind, Manifest, Preset, SCHEMA_VERSION, Tool, Wavelengths};
+use crate::medium::{Medium, Role};
+use crate::preset::{Planet, Water};
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// The manifest of a bake, without its other files, quality and warnings.
+pub fn manifest(
+    planet: &Planet,
+    settings: &Settings,
+    palette: &Palette,
+    medium: &Medium,
+    files: &Files,
+) -> Manifest {
+    let rows = |weights: Vec<[f64; 3]>| {
+        (0..3).map(|c| weights.iter().map(|w| w[c]).collect()).collect::<Vec<Vec<f64>>>()
+    };
+    let mut matrices = BTreeMap::new();
+    matrices.insert("rgb_from_all_wavelengths".into(), rows(palette.rgb_weights()));
+    matrices.insert("rgb_from_four".into(), rows(palette.four_rgb_weights()));
+    matrices.insert("xyz_from_all_wavelengths".into(), rows(palette.weights.clone()));
+    matrices.insert("xyz_from_four".into(), rows(palette.four_weights.clone()));
+    matrices.insert("xyz_to_rgb".into(), palette.space.from_xyz().iter().map(|r| r.to_vec()).collect());
+    let white = palette.space.white();
+    Manifest {
+        schema_version: SCHEMA_VERSION,
+        tool: Tool { name: "tyndall".into(), version: env!("CARGO_PKG_VERSION").into() },
+        preset: Preset { name: planet.name.clone(), hash: planet.hash(), resolved: planet.resolved() },
+        settings: settings.json(),
+        wavelengths: Wavelengths { kind: GridKind::Points, nm: settings.wavelengths_nm.clone() },
+        colour: Colour {
+            space: palette.space.name().into(),
+            observer: "CIE 1931 2 degrees".into(),
+            white: crate::spectrum::chromaticity(white),
+            matrices,
+        },
+        constants: constants(planet, palette, medium),
+        waters: Vec::new(),
+        tables: files.tables.iter().map(|t| t.entry.clone()).collect(),
+        files: Vec::new(),
+        quality: Value::Null,
+        warnings: Vec::new(),
+    }
+}
+
+/// Adds what the waters' tables need.
+pub fn add_waters(manifest: &mut Manifest, waters: &[Water], tables: &WaterTables) {
+    manifest.colour.matrices.extend(tables.matrices.clone());
+    manifest.constants.extend(tables.constants.clone());
+    let preset = |w: &Water| Preset { name: w.name.clone(), hash: w.hash(), resolved: w.resolved() };
+    manifest.waters = waters.iter().map(preset).collect();
+}
+
+fn constants(planet: &Planet, palette: &Palette, medium: &Medium) -> BTreeMap<String, Vec<f64>> {
+    let groups = compact::groups(medium);
+    let is_aerosol = |g: &Vec<usize>| medium.constituents[g[0]].role == Role::Aerosol;
+    let row = groups.iter().position(is_aerosol).unwrap_or(0);
+    BTreeMap::from([
+        ("four_wavelengths_nm".to_string(), palette.four_nm()),
+        (
+            "ground_albedo_at_four".to_string(),
+            palette.four.iter().map(|&w| medium.ground_albedo[w]).collect(),
+        ),
+        ("ground_radius_m".to_string(), vec![medium.ground_radius]),
+        ("top_radius_m".to_string(), vec![medium.top_radius]),
+        ("star_illuminance_lx".to_string(), vec![palette.star_xyz[1]]),
+        ("star_angular_radius_rad".to_string(), vec![planet.star.angular_radius]),
+        (
+            "star_irradiance_at_wavelengths_w_m2_nm".to_string(),
+            planet.star.irradiance.at_all(&palette.wavelengths_nm),
+        ),
+        ("elek2010_aerosol_phase_row".to_string(), vec![row as f64]),
+    ])
+}

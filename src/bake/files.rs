@@ -1,0 +1,135 @@
+//! The files of a bake: tables encoded and hashed, and counts of what halves cannot hold well.
+
+use super::tables::Baked;
+use crate::error::Result;
+use crate::export::manifest::{Encoding, EncodingKind, OtherFile, Table};
+use crate::export::{Atlas, Samples, exr};
+use half::f16;
+use rayon::prelude::*;
+use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
+
+/// BLAKE3 as in the manifest.
+fn hash(bytes: &[u8]) -> String {
+    blake3::hash(bytes).to_hex().to_string()
+}
+
+/// Encoded tables, and files that are none.
+pub struct Files {
+    pub tables: Vec<TableFile>,
+    /// Path, what it is, content.
+    pub extra: Vec<(String, String, Vec<u8>)>,
+}
+
+pub struct TableFile {
+    atlas: Atlas,
+    pub entry: Table,
+    bytes: Vec<u8>,
+}
+
+impl Files {
+    /// Encodes tables, in their order.
+    pub fn encode(baked: &[Baked]) -> Result<Files> {
+        let encode = |b: &Baked| -> Result<TableFile> {
+            let atlas = b.atlas();
+            let bytes = exr::to_exr_bytes(&atlas)?;
+            let entry = b.entry(&atlas, hash(&bytes));
+            Ok(TableFile { atlas, entry, bytes })
+        };
+        Ok(Files { tables: baked.par_iter().map(encode).collect::<Result<_>>()?, extra: Vec::new() })
+    }
+
+    /// Tables of a layout by name, as a reader finds them.
+    pub fn named(&self, layout: &str) -> BTreeMap<String, Atlas> {
+        let of_layout = self.tables.iter().filter(|t| t.entry.layout == layout);
+        of_layout.map(|t| (t.entry.name.clone(), t.atlas.clone())).collect()
+    }
+
+    /// Counts of halves of each table that hold less than they seem to, see [`OddHalves`].
+    pub fn odd_halves(&self) -> Value {
+        let mut out = Map::new();
+        for t in &self.tables {
+            let halves = t.atlas.channels.iter().filter_map(|c| match &c.samples {
+                Samples::Half(values) => Some(values),
+                Samples::Float(_) => None,
+            });
+            let odd = OddHalves::of(halves.flatten().copied());
+            out.insert(format!("{}/{}", t.entry.layout, t.entry.name), odd.json(&t.entry.encoding));
+        }
+        Value::Object(out)
+    }
+
+    /// Entries of the manifest for the files that are no tables.
+    pub fn others(&self) -> Vec<OtherFile> {
+        let entry = |(file, about, bytes): &(String, String, Vec<u8>)| OtherFile {
+            file: file.clone(),
+            blake3: hash(bytes),
+            about: about.clone(),
+        };
+        self.extra.iter().map(entry).collect()
+    }
+
+    /// Path and content of every file, tables first.
+    pub fn into_bytes(self) -> Vec<(String, Vec<u8>)> {
+        let tables = self.tables.into_iter().map(|f| (f.entry.file, f.bytes));
+        tables.chain(self.extra.into_iter().map(|(file, _, bytes)| (file, bytes))).collect()
+    }
+}
+
+/// Halves that lost something of their value, counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct OddHalves {
+    values: usize,
+    zero: usize,
+    /// Smaller than 6.1e-5, with less than 11 bits.
+    subnormal: usize,
+    negative: usize,
+    /// ±65504, the largest, to which values are clipped, and what is not finite.
+    largest: usize,
+}
+
+impl OddHalves {
+    fn of(halves: impl Iterator<Item = f16>) -> Self {
+        const SIGN: u16 = 0x8000;
+        const SMALLEST_NORMAL: u16 = 0x0400;
+        let mut odd = OddHalves::default();
+        for half in halves {
+            let size = half.to_bits() & !SIGN;
+            odd.values += 1;
+            odd.zero += usize::from(size == 0);
+            odd.subnormal += usize::from((1..SMALLEST_NORMAL).contains(&size));
+            odd.negative += usize::from(size > 0 && half.to_bits() & SIGN != 0);
+            odd.largest += usize::from(size >= f16::MAX.to_bits());
+        }
+        odd
+    }
+
+    /// For the manifest. Logarithms may be negative; nothing else that is stored is.
+    fn json(&self, encoding: &Encoding) -> Value {
+        let mut out = json!({
+            "values": self.values,
+            "zero": self.zero,
+            "subnormal": self.subnormal,
+            "largest": self.largest,
+        });
+        if encoding.kind == EncodingKind::Linear {
+            out["negative"] = json!(self.negative);
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One of each kind beside a plain value; 1e5 is clipped to infinity, -0 is zero and not negative.
+    #[test]
+    fn odd_halves_are_told_apart() {
+        let halves = [1.0, 0.0, -0.0, 3e-6, -2.0, 65504.0, 1e5].map(f16::from_f32);
+        let odd = OddHalves::of(halves.into_iter());
+        assert_eq!(odd, OddHalves { values: 7, zero: 2, subnormal: 1, negative: 1, largest: 2 });
+        assert_eq!(odd.json(&Encoding::linear(1.0))["negative"], 1);
+        assert!(odd.json(&Encoding::log(1.0, 0.0, -24.0)).get("negative").is_none());
+    }
+}
