@@ -11,33 +11,40 @@ use super::tables::{Baked, axes_of, axis, file_order};
 use crate::export::manifest::Encoding;
 use crate::lanes::Lanes;
 use crate::medium::Medium;
-use crate::table::{Elek2010, SunCurve};
+use crate::table::{Bends, Elek2010, SunCurve};
 use crate::transport::fill::{Painter, RayLight, SunPairs, Wanted};
 use crate::transport::solve::Solution;
 use rayon::prelude::*;
 
 /// Name of the layout and of its folder.
 pub const LAYOUT: &str = "compact";
-/// Texels of the single-scattering tables and of the multiple-scattering one: altitude, view, sun, azimuth.
-pub const SINGLE_SIZE: [usize; 4] = [28, 40, 38, 8];
-pub const MULTIPLE_SIZE: [usize; 4] = [18, 44, 36, 10];
-const DEPTH_SIZE: [usize; 2] = [64, 256];
+/// Texels of each single-scattering table: altitude, view, sun, azimuth.
+pub const SINGLE_SIZE: [usize; 4] = [24, 44, 40, 8];
+/// Texels of the multiple-scattering table.
+pub const MULTIPLE_SIZE: [usize; 4] = [16, 44, 40, 10];
+const DEPTH_SIZE: [usize; 2] = [48, 128];
 const IRRADIANCE_SIZE: usize = 128;
 /// Stored logarithms at or below this stand for darkness.
 pub const FLOOR: f64 = -24.0;
-/// The sun axis of single scattering, closest where the planet's shadow crosses the air. Without its phase
-/// function it hardly depends on the azimuth.
-const SINGLE_SUN: SunCurve = SunCurve::Rational { shift: 0.08, width: 0.13 };
+/// The sun axis of single scattering, closest where the planet's shadow crosses the air, with a texel where it
+/// meets the ground. Without its phase function it hardly depends on the azimuth.
+const SINGLE_SUN: SunCurve = SunCurve::Rational { shift: 0.05, width: 0.13 };
 /// The sun axis of the rest, closest where the sun is a little below the horizon (0.728² is half of 1 + 0.06). Its
 /// light depends on the angle to the sun, so that steps near the zenith are steps in s cos φ.
 const MULTIPLE_SUN: SunCurve = SunCurve::HalfAngle { centre: 0.728, width: 0.13 };
 
-/// The paper's view axis spends few texels near the zenith, where light varies with azimuth.
-const VIEW_POWER: f64 = 1.5;
+/// The paper's view axis spends few texels near the zenith, where light varies with azimuth, and few close over the
+/// horizon, where, from a height, the rays leave the haze. Haze also wants more altitudes near the ground than the
+/// paper has. Light scattered more often varies less with either.
+const SINGLE_BENDS: Bends = Bends { altitude_bend: 1.5, view_power: 1.5, horizon_power: 2.4 };
+const MULTIPLE_BENDS: Bends = Bends { altitude_bend: 1.5, view_power: 1.5, horizon_power: 1.5 };
+const DEPTH_BENDS: Bends = Bends { altitude_bend: 1.0, view_power: 1.5, horizon_power: 1.5 };
 
-fn mapping(medium: &Medium, size: [usize; 4], sun: SunCurve) -> Elek2010 {
+fn mapping(medium: &Medium, size: [usize; 4], sun: SunCurve, bends: Bends) -> Elek2010 {
     let mapping = Elek2010::new(medium.ground_radius, medium.top_radius, size);
-    mapping.expect("sizes are checked with the arguments").with_curves(sun, VIEW_POWER)
+    let mapping = mapping.expect("sizes are checked with the arguments");
+    let sun = sun.with_texel_at_horizon(mapping.mu_s_min(), size[2]);
+    mapping.with_curves(sun, bends)
 }
 
 /// Lists of constituents that share a phase function at every wavelength.
@@ -69,8 +76,9 @@ impl Default for Sizes {
 /// where there is light.
 pub fn tables(medium: &Medium, solution: &Solution, palette: &Palette, sizes: Sizes) -> (Vec<Baked>, usize) {
     let groups = groups(medium);
-    let single = mapping(medium, sizes.single, SINGLE_SUN);
-    let multiple = mapping(medium, sizes.multiple, MULTIPLE_SUN);
+    let single = mapping(medium, sizes.single, SINGLE_SUN, SINGLE_BENDS);
+    let multiple = mapping(medium, sizes.multiple, MULTIPLE_SUN, MULTIPLE_BENDS);
+    let of_depth = mapping(medium, sizes.multiple, MULTIPLE_SUN, DEPTH_BENDS);
     let mut out = Vec::new();
     let singles = fill(solution, palette, &single, &groups, Wanted::Single);
     for (group, texels) in groups.iter().zip(singles) {
@@ -92,7 +100,7 @@ pub fn tables(medium: &Medium, solution: &Solution, palette: &Palette, sizes: Si
     let negative = sum.iter().flatten().filter(|v| **v < 0.0).count();
     out.push(encode("multiple".into(), "light scattered more than once over 1 - T", sum, &multiple, palette));
     let depth =
-        |which| table(medium, solution, palette, LAYOUT, &multiple, DEPTH_SIZE, Held::LogOfMean, which);
+        |which| table(medium, solution, palette, LAYOUT, &of_depth, DEPTH_SIZE, Held::LogOfMean, which);
     out.push(depth(Matter::All));
     if medium.constituents.iter().any(|c| !c.scatters()) {
         out.push(depth(Matter::Scatterers));

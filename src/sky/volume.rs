@@ -2,7 +2,7 @@
 
 use crate::export::Atlas;
 use crate::export::manifest::{Encoding, Table};
-use crate::table::{Elek2010, SunCurve, Texel, texel};
+use crate::table::{Bends, Elek2010, SunCurve, Texel, texel};
 
 /// Stored samples of up to four channels, x fastest, and how each channel is decoded.
 pub(super) struct Texels {
@@ -80,7 +80,12 @@ fn mapping(table: &Table, size: [usize; 4]) -> Result<Elek2010, String> {
         (_, Some(centre), Some(width)) => SunCurve::HalfAngle { centre, width },
         _ => SunCurve::Paper,
     };
-    Ok(shell.with_curves(curve, constant(1, "view_power")?))
+    let bends = Bends {
+        altitude_bend: constant(0, "altitude_bend")?,
+        view_power: constant(1, "view_power")?,
+        horizon_power: constant(1, "horizon_power")?,
+    };
+    Ok(shell.with_curves(curve, bends))
 }
 
 /// A table over altitude, view, sun and azimuth.

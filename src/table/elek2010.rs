@@ -10,6 +10,7 @@
 //! horizon and distances keep their digits.
 
 use super::array::{Texel, texel};
+use super::bends::Bends;
 use super::sun_curve::SunCurve;
 
 /// The exponent of the sun axis over its whole length: 2.8 cos δ + 0.8 at cos δ = 1. A longer axis stretches
@@ -33,8 +34,7 @@ pub struct Elek2010 {
     /// Steepness of the sun axis: 2.8 (the paper's) where the axis has the paper's length.
     sun_steepness: f64,
     curve: SunCurve,
-    /// The view axis is even in the power 1/p of the paper's V; 1 is the paper's.
-    view_power: f64,
+    bends: Bends,
     size: [usize; 4],
 }
 
@@ -71,23 +71,22 @@ impl Elek2010 {
             mu_s_min,
             sun_steepness,
             curve: SunCurve::Paper,
-            view_power: 1.0,
+            bends: Bends::PAPER,
             size,
         })
     }
 
-    /// The same mapping with another sun axis, and a view axis even in the power 1/`view_power` of the paper's:
-    /// above 1 it is finer near zenith and nadir.
-    pub fn with_curves(mut self, curve: SunCurve, view_power: f64) -> Self {
+    /// The same mapping with another sun axis and bent altitude and view axes.
+    pub fn with_curves(mut self, curve: SunCurve, bends: Bends) -> Self {
         self.curve = curve;
-        self.view_power = view_power;
+        self.bends = bends;
         self
     }
 
     /// The same shell and curves for a table of other size; conditions as for [`Self::new`].
     pub fn resized(&self, size: [usize; 4]) -> Option<Self> {
         Elek2010::new(self.ground_radius, self.ground_radius + self.height, size)
-            .map(|m| m.with_curves(self.curve, self.view_power))
+            .map(|m| m.with_curves(self.curve, self.bends))
     }
 
     /// Radius of the ground and of the top, m.
@@ -114,7 +113,7 @@ impl Elek2010 {
 
     /// U(altitude) in 0..1.
     pub fn altitude_coordinate(&self, altitude: f64) -> f64 {
-        self.horizon_distance(altitude) / self.horizon_distance(self.height)
+        self.bends.altitude_coordinate(self.horizon_distance(altitude) / self.horizon_distance(self.height))
     }
 
     /// Altitude of texel `i`, m: 0 for the first, the shell's height for the last.
@@ -122,7 +121,8 @@ impl Elek2010 {
         if i + 1 == self.size[0] {
             return self.height;
         }
-        let z1 = self.horizon_distance(self.height) * i as f64 / (self.size[0] - 1) as f64;
+        let share = self.bends.altitude(i as f64 / (self.size[0] - 1) as f64);
+        let z1 = self.horizon_distance(self.height) * share;
         let ground = self.ground_radius;
         z1 * z1 / (ground + (ground * ground + z1 * z1).sqrt())
     }
@@ -194,7 +194,7 @@ impl Elek2010 {
         }
         let distance = self.distance(altitude, mu, hits_ground);
         let paper = ((distance - shortest) / (longest - shortest)).clamp(0.0, 1.0);
-        if self.view_power == 1.0 { paper } else { libm::pow(paper, 1.0 / self.view_power) }
+        self.bends.view_coordinate(paper, hits_ground)
     }
 
     /// Cosine of the view zenith angle, and whether the ray hits the ground, of view texel `j` at an altitude.
@@ -209,8 +209,7 @@ impl Elek2010 {
         }
         let horizon = self.horizon_mu(altitude);
         let (shortest, longest) = self.distances(altitude, hits_ground);
-        let even = step as f64 / (half - 1) as f64;
-        let x = if self.view_power == 1.0 { even } else { libm::pow(even, self.view_power) };
+        let x = self.bends.view(step as f64 / (half - 1) as f64, hits_ground);
         let distance = shortest + x * (longest - shortest);
         if step + 1 == half || distance == 0.0 {
             return (horizon, hits_ground);
@@ -315,20 +314,25 @@ impl Elek2010 {
             AxisFormula {
                 name: "altitude",
                 size: self.size[0],
-                coordinate: "U = Z1 / Z2, Z1 = sqrt(r^2 - r_ground^2)",
-                inverse: "r = sqrt(r_ground^2 + (U Z2)^2)",
-                constants: radii.clone(),
+                coordinate: "U = (1 + altitude_bend) u / (1 + altitude_bend u), u = Z1 / Z2, Z1 = sqrt(r^2 - \
+                    r_ground^2)",
+                inverse: "u = U / (1 + altitude_bend (1 - U)); r = sqrt(r_ground^2 + (u Z2)^2)",
+                constants: [radii.clone(), vec![("altitude_bend", self.bends.altitude_bend)]].concat(),
             },
             AxisFormula {
                 name: "view",
                 size: self.size[1],
-                coordinate: "V = ((d - d_min) / (d_max - d_min))^(1 / view_power). First half of the texels, rays that hit the \
-                    ground: d = -r mu - sqrt(r^2 mu^2 - Z1^2), d_min = r - r_ground, d_max = Z1. Second half, \
-                    rays that do not: d = -r mu + sqrt(r^2 mu^2 - Z1^2 + Z2^2), d_min = r_top - r, \
-                    d_max = Z1 + Z2. Never filter across the halves",
-                inverse: "d = d_min + V^view_power (d_max - d_min). First half: mu = -(Z1^2 + d^2) / (2 r d). Second \
-                    half: mu = (Z2^2 - Z1^2 - d^2) / (2 r d)",
-                constants: [radii, vec![("view_power", self.view_power)]].concat(),
+                coordinate: "V = 1 - (1 - t^(1 / view_power))^(1 / horizon_power), t = (d - d_min) / (d_max - d_min). First \
+                    half of the texels, rays that hit the ground: d = -r mu - sqrt(r^2 mu^2 - Z1^2), d_min = r - \
+                    r_ground, d_max = Z1, horizon_power = 1. Second half, rays that do not: d = -r mu + sqrt(r^2 \
+                    mu^2 - Z1^2 + Z2^2), d_min = r_top - r, d_max = Z1 + Z2. Never filter across the halves",
+                inverse: "t = (1 - (1 - V)^horizon_power)^view_power, d = d_min + t (d_max - d_min). First half: \
+                    horizon_power = 1, mu = -(Z1^2 + d^2) / (2 r d). Second half: mu = (Z2^2 - Z1^2 - d^2) / (2 r d)",
+                constants: [
+                    radii,
+                    vec![("view_power", self.bends.view_power), ("horizon_power", self.bends.horizon_power)],
+                ]
+                .concat(),
             },
             self.sun_axis(),
             AxisFormula {

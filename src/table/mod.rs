@@ -1,11 +1,13 @@
 //! Tables as arrays, and the mappings between physical coordinates and texels. No physics here.
 
 mod array;
+mod bends;
 mod elek2010;
 mod sun_curve;
 mod water;
 
 pub use array::{Array, Element, Texel, texel};
+pub use bends::Bends;
 pub use elek2010::{AxisFormula, Elek2010};
 pub use sun_curve::SunCurve;
 pub use water::{EvenCosine, WaterAxes};

@@ -15,6 +15,29 @@ pub enum SunCurve {
 }
 
 impl SunCurve {
+    /// The same curve with its shift moved by less than a texel, so that one of `size` texels of an axis from
+    /// `mu_s_min` lies at mu_s = 0: there the planet's shadow meets the ground, and light scattered once ends at
+    /// a step that no texel pair may straddle by day. Curves without a shift stay as they are.
+    pub fn with_texel_at_horizon(self, mu_s_min: f64, size: usize) -> Self {
+        let SunCurve::Rational { shift, width } = self else { return self };
+        let steps = size.saturating_sub(1) as f64;
+        let place = |shift: f64| {
+            let x = |mu: f64| (mu + shift) / ((mu + shift).abs() + width);
+            steps * (x(0.0) - x(mu_s_min)) / (x(1.0) - x(mu_s_min))
+        };
+        // The place of mu_s = 0 moves towards the end of the axis as the shift grows.
+        let wanted = place(shift).round();
+        let (mut low, mut high) = (-0.5 * width, shift + width);
+        if !(place(low) < wanted && wanted < place(high)) {
+            return self;
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if place(middle) < wanted { low = middle } else { high = middle }
+        }
+        SunCurve::Rational { shift: high, width }
+    }
+
     /// x(mu_s), −1 to 1; none for the paper's curve, which is no quotient.
     #[inline]
     pub(super) fn quotient(self, mu_s: f64) -> Option<f64> {
@@ -69,7 +92,7 @@ fn half_sine(mu_s: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Elek2010;
+    use super::super::{Bends, Elek2010};
     use super::*;
 
     const CURVES: [SunCurve; 3] = [
@@ -83,7 +106,8 @@ mod tests {
     #[test]
     fn coordinates_and_texels_are_inverse() {
         for curve in CURVES {
-            let mapping = Elek2010::new(500e3, 700e3, [4, 6, 33, 3]).unwrap().with_curves(curve, 1.0);
+            let mapping =
+                Elek2010::new(500e3, 700e3, [4, 6, 33, 3]).unwrap().with_curves(curve, Bends::PAPER);
             for k in 0..33 {
                 let x = mapping.sun_coordinate(mapping.mu_s(k).clamp(mapping.mu_s_min(), 1.0)).unwrap();
                 assert!((x - k as f64 / 32.0).abs() < 1e-12, "{curve:?} {k}: {x}");
@@ -92,12 +116,28 @@ mod tests {
         }
     }
 
+    /// One of the texels of a curve so shifted lies at mu_s = 0, on a thin shell, a thick one and for many and few
+    /// texels, and the shift moved by less than one of the texels is wide there.
+    #[test]
+    fn a_texel_lies_at_the_horizon() {
+        let width = 0.13;
+        for (mu_s_min, size) in [(-0.2857, 38), (-0.2857, 41), (-0.8, 20), (-0.3, 97)] {
+            let curve = SunCurve::Rational { shift: 0.05, width }.with_texel_at_horizon(mu_s_min, size);
+            let x = |mu: f64| curve.quotient(mu).unwrap();
+            let at = (size - 1) as f64 * (x(0.0) - x(mu_s_min)) / (x(1.0) - x(mu_s_min));
+            assert!((at - at.round()).abs() < 1e-9, "{mu_s_min} {size}: {at}");
+            let SunCurve::Rational { shift, .. } = curve else { panic!("still rational") };
+            assert!((shift - 0.05).abs() < 1.0 / size as f64, "{mu_s_min} {size}: {shift}");
+        }
+    }
+
     /// By the half angle, s cos φ is followed to 2 % of its range between any two texels by day; by the cosine,
     /// the last step before the zenith is off by more than 5 %.
     #[test]
     fn half_angle_is_fine_near_the_zenith() {
         let worst = |curve| {
-            let mapping = Elek2010::new(6000e3, 6080e3, [4, 6, 36, 3]).unwrap().with_curves(curve, 1.0);
+            let mapping =
+                Elek2010::new(6000e3, 6080e3, [4, 6, 36, 3]).unwrap().with_curves(curve, Bends::PAPER);
             let sine = |mu: f64| (1.0 - mu * mu).sqrt();
             let by_day = (0..35).map(|k| [mapping.mu_s(k), mapping.mu_s(k + 1)]).filter(|m| m[0] > 0.2);
             let errors = by_day.flat_map(|m| {

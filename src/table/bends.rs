@@ -1,0 +1,105 @@
+//! How the texels of a table's altitude and view axes are spread over the paper's coordinates.
+
+/// Bends of the axes of Elek & Kmoch 2010 §4.1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bends {
+    /// Above 0, the altitude axis is finer near the ground by the factor 1 + bend, and coarser near the top by
+    /// the same.
+    pub altitude_bend: f64,
+    /// Above 1, the view axis is finer near zenith and nadir.
+    pub view_power: f64,
+    /// Above 1, rays that do not hit the ground are finer near the horizon. Seen from a height, rays that pass
+    /// close over the ground and rays that pass above the haze differ little in length: a kilometre of lowest
+    /// altitude is 14 km of 1800 seen from the top of Earth's air. Rays that do hit the ground need no bend: there
+    /// the length goes as the square root of the angle below the horizon.
+    pub horizon_power: f64,
+}
+
+impl Bends {
+    /// The paper's axes.
+    pub const PAPER: Bends = Bends { altitude_bend: 0.0, view_power: 1.0, horizon_power: 1.0 };
+
+    /// Coordinate of the paper's U.
+    #[inline]
+    pub(super) fn altitude_coordinate(&self, u: f64) -> f64 {
+        (1.0 + self.altitude_bend) * u / (1.0 + self.altitude_bend * u)
+    }
+
+    /// The paper's U at a coordinate.
+    pub(super) fn altitude(&self, x: f64) -> f64 {
+        x / (1.0 + self.altitude_bend * (1.0 - x))
+    }
+
+    /// Coordinate in a half of the view axis of the paper's V, 0 nadir or zenith, 1 the horizon.
+    #[inline]
+    pub(super) fn view_coordinate(&self, v: f64, hits_ground: bool) -> f64 {
+        let x = power(v, 1.0 / self.view_power);
+        if hits_ground { x } else { from_the_end(x, 1.0 / self.horizon_power) }
+    }
+
+    /// The paper's V at a coordinate in a half of the view axis.
+    pub(super) fn view(&self, x: f64, hits_ground: bool) -> f64 {
+        let x = if hits_ground { x } else { from_the_end(x, self.horizon_power) };
+        power(x, self.view_power)
+    }
+}
+
+/// x to a power; to the first it is x to the bit.
+#[inline]
+fn power(x: f64, exponent: f64) -> f64 {
+    if exponent == 1.0 { x } else { libm::pow(x.max(0.0), exponent) }
+}
+
+/// 1 − (1 − x) to a power; to the first it is x to the bit.
+#[inline]
+fn from_the_end(x: f64, exponent: f64) -> f64 {
+    if exponent == 1.0 { x } else { 1.0 - power(1.0 - x, exponent) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Elek2010, SunCurve};
+    use super::*;
+
+    const BENT: Bends = Bends { altitude_bend: 1.5, view_power: 1.4, horizon_power: 2.5 };
+
+    /// Texel centres have the coordinates i / (n − 1), ends included, on a shell a third as thick as its planet,
+    /// by the paper's axes and by bent ones.
+    #[test]
+    fn coordinates_and_texels_are_inverse() {
+        for bends in [Bends::PAPER, BENT] {
+            let map =
+                Elek2010::new(600e3, 800e3, [13, 24, 5, 9]).unwrap().with_curves(SunCurve::Paper, bends);
+            for i in 0..13 {
+                let altitude = map.altitude(i);
+                let x = map.altitude_coordinate(altitude);
+                assert!((x - i as f64 / 12.0).abs() < 1e-12, "{bends:?} altitude {i}: {x}");
+                // On the ground all rays down have no length.
+                for j in if i == 0 { 12..24 } else { 0..24 } {
+                    let (mu, hits_ground) = map.mu(altitude, j);
+                    let x = map.view_coordinate(altitude, mu, hits_ground);
+                    // Horizon distances lose half their digits in the cosine, a power above 1 more.
+                    assert!((x - (j % 12) as f64 / 11.0).abs() < 1e-4, "{bends:?} view {i} {j}: {x}");
+                }
+            }
+        }
+    }
+
+    /// What each bend is for: seen from the top, a ray that passes a fiftieth of the shell's height above the ground
+    /// is more than two of 24 view texels from the one that grazes it, not half a texel; half of the altitudes, not a
+    /// third, lie in the lowest tenth.
+    #[test]
+    fn bent_axes_are_finer_where_they_should_be() {
+        let place = |bends: Bends| {
+            let map =
+                Elek2010::new(6000e3, 6080e3, [13, 48, 5, 9]).unwrap().with_curves(SunCurve::Paper, bends);
+            let lowest = 6000e3 + 80e3 / 50.0;
+            let mu = -libm::sqrt(1.0 - (lowest / 6080e3) * (lowest / 6080e3));
+            let view = 23.0 * (1.0 - map.view_coordinate(80e3, mu, false));
+            [view, map.altitude_coordinate(8e3)]
+        };
+        let (paper, bent) = (place(Bends::PAPER), place(BENT));
+        assert!(paper[0] < 0.5 && bent[0] > 2.0, "{paper:?} {bent:?}");
+        assert!(paper[1] < 0.35 && bent[1] > 0.5, "{paper:?} {bent:?}");
+    }
+}
