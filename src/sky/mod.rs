@@ -35,7 +35,8 @@ pub enum AerosolPhase {
     Isotropic,
 }
 
-/// A layout of a bake, ready to answer.
+/// A layout of a bake, ready to answer. One is open at a time, so that its size on the stack does not matter.
+#[expect(clippy::large_enum_variant)]
 pub enum Sky {
     Compact(Compact),
     Elek2010(Elek2010Sky),
