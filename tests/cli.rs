@@ -1,5 +1,8 @@
 //! `tyndall` as a process: what a user types, what comes back, what stands on the disk afterwards.
 
+#[path = "common/mounted.rs"]
+mod mounted;
+
 mod cli {
     mod damaged;
     mod disk;

@@ -1,33 +1,18 @@
 //! The literal Algorithm 1 against direct integration, and what must hold of it whatever its resolution.
 
 mod direct;
+// The solver's test planets, of which this program uses the parts.
+#[allow(dead_code)]
+#[path = "solver/worlds.rs"]
+mod worlds;
 
 use direct::Planet;
 use std::f64::consts::PI;
 use tyndall::isa::Isa;
 use tyndall::lanes::Lanes;
-use tyndall::medium::{Constituent, DensityProfile, Medium, PhaseFunction, Role};
+use tyndall::medium::{Medium, PhaseFunction, Role};
 use tyndall::methods::literal::{Gather, Literal, Settings, bake, work};
-
-const RAYLEIGH: PhaseFunction = PhaseFunction::Rayleigh { king_factor: 1.0 };
-
-fn constituent(
-    role: Role,
-    phase: PhaseFunction,
-    scale_height: f64,
-    scattering: &[f64],
-    absorption: &[f64],
-) -> Constituent {
-    Constituent {
-        name: format!("{role:?}"),
-        role,
-        density: DensityProfile::Exponential { scale_height },
-        scattering: scattering.to_vec(),
-        absorption: absorption.to_vec(),
-        phase: vec![phase; scattering.len()],
-        similarity_g: vec![0.0; scattering.len()],
-    }
-}
+use worlds::{RAYLEIGH, constituent, exponential};
 
 /// A small world with a thick shell at two wavelengths: vertical optical depths 0.45 and 0.23.
 fn small_world() -> Medium {
@@ -37,8 +22,14 @@ fn small_world() -> Medium {
         wavelengths_nm: vec![450.0, 650.0],
         ground_albedo: vec![0.3, 0.6],
         constituents: vec![
-            constituent(Role::Gas, RAYLEIGH, 12e3, &[3e-5, 1e-5], &[0.0, 2e-6]),
-            constituent(Role::Aerosol, PhaseFunction::Isotropic, 6e3, &[1e-5, 1.2e-5], &[2e-6, 1e-6]),
+            constituent(Role::Gas, RAYLEIGH, exponential(12e3), &[3e-5, 1e-5], &[0.0, 2e-6]),
+            constituent(
+                Role::Aerosol,
+                PhaseFunction::Isotropic,
+                exponential(6e3),
+                &[1e-5, 1.2e-5],
+                &[2e-6, 1e-6],
+            ),
         ],
     }
 }

@@ -10,7 +10,7 @@ use crate::spectrum::{
 
 /// Share with which twilight counts in the choice of four wavelengths and their weights. Four cannot hold day
 /// and dusk alike: equal shares cost the day a percent of its light for what nobody sees in the dark.
-const TWILIGHT_SHARE: f64 = 0.03;
+const TWILIGHT_SHARE: f64 = 0.05;
 /// Cosine of the sun's zenith angle (17 degrees up) from which it is day.
 const DAY: f64 = 0.3;
 

@@ -39,7 +39,7 @@ fn lattice(medium: &Medium, offset: f64) -> Lattice {
         |k: usize| low + (1.0 - low) * ((k as f64 + 0.3 + 0.4 * offset) / 12.0) * ((k as f64 + 1.0) / 12.0);
     let from_space = [-0.97, -0.75, -0.5, -0.22];
     Lattice {
-        altitudes: [0.0, 0.015 + 0.01 * offset, 0.08 + 0.04 * offset, 0.3 + 0.1 * offset, 1.0],
+        altitudes: [0.0, 0.002 + 0.002 * offset, 0.04 + 0.02 * offset, 0.2 + 0.1 * offset, 1.0],
         views: [-0.9, -0.35, -0.04, 0.04, 0.13, 0.35, 0.85].map(|mu: f64| mu + 0.05 * offset),
         from_space: from_space.map(|mu| mu + 0.08 * offset),
         suns: std::array::from_fn(sun),

@@ -145,36 +145,21 @@ impl Walk<'_> {
             return;
         }
         let part = hope / self.reference;
-        if part < WINDOW.0 {
-            if stream.uniform() * WINDOW.0 < part {
-                self.go_on(
-                    ground,
-                    air,
-                    from.direction,
-                    event,
-                    numbers,
-                    copy,
-                    WINDOW.0 / part,
-                    stream.branch(),
-                );
+        let (all, factor) = if part < WINDOW.0 {
+            if stream.uniform() * WINDOW.0 >= part {
+                return;
             }
-            return;
-        }
-        let wanted = ((part / WINDOW.1).ceil() as usize).clamp(1, COPIES.0);
-        let all = wanted.min(1 + COPIES.1 - self.copies);
+            (1, WINDOW.0 / part)
+        } else {
+            let wanted = ((part / WINDOW.1).ceil() as usize).clamp(1, COPIES.0);
+            let all = wanted.min(1 + COPIES.1 - self.copies);
+            (all, 1.0 / all as f64)
+        };
         self.copies += all - 1;
         for k in 0..all {
             let numbers = if k == 0 { numbers } else { self.numbers.event(event - 1, true, &mut stream) };
-            self.go_on(
-                ground,
-                air,
-                from.direction,
-                event,
-                numbers,
-                copy || k > 0,
-                1.0 / all as f64,
-                stream.branch(),
-            );
+            let (copy, stream) = (copy || k > 0, stream.branch());
+            self.go_on(ground, air, from.direction, event, numbers, copy, factor, stream);
         }
     }
 

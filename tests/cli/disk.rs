@@ -1,38 +1,11 @@
 //! The machine fails: exit code 3, one line, and the bake that stood there is whole.
 
 use super::run::*;
+use crate::mounted::Mounted;
 use std::fs::{self, File};
 use std::path::Path;
 use std::process::{Command, Stdio};
-use tempfile::{TempDir, tempdir};
-
-/// A small filesystem of its own; `None`, with the reason printed, where this user may not mount one.
-struct Mounted(TempDir);
-
-impl Mounted {
-    fn new(options: &str) -> Option<Self> {
-        let dir = tempdir().unwrap();
-        let mount =
-            Command::new("mount").args(["-t", "tmpfs", "-o", options, "tmpfs"]).arg(dir.path()).output();
-        let reason = match mount {
-            Ok(output) if output.status.success() => return Some(Mounted(dir)),
-            Ok(output) => String::from_utf8_lossy(&output.stderr).trim().to_string(),
-            Err(e) => e.to_string(),
-        };
-        eprintln!("skipped: a small filesystem cannot be mounted here: {reason}");
-        None
-    }
-
-    fn path(&self) -> &Path {
-        self.0.path()
-    }
-}
-
-impl Drop for Mounted {
-    fn drop(&mut self) {
-        let _ = Command::new("umount").arg(self.0.path()).status();
-    }
-}
+use tempfile::tempdir;
 
 /// A bake into `out`, where one stands already, fails as the machine's failures do and changes nothing.
 fn fails_and_changes_nothing(out: &Path, reason: &str) {

@@ -1,33 +1,10 @@
 //! The disk fails: one line, exit code 3, and the old bake is whole.
 
 use super::staging::{bake, names, text_of};
+use crate::mounted::Mounted;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use tempfile::{TempDir, tempdir};
-
-/// A small filesystem of its own; `None`, with the reason printed, where this user may not mount one.
-struct Mounted(TempDir);
-
-impl Mounted {
-    fn new(options: &str) -> Option<Self> {
-        let dir = tempdir().unwrap();
-        let mount =
-            Command::new("mount").args(["-t", "tmpfs", "-o", options, "tmpfs"]).arg(dir.path()).output();
-        let reason = match mount {
-            Ok(output) if output.status.success() => return Some(Mounted(dir)),
-            Ok(output) => String::from_utf8_lossy(&output.stderr).trim().to_string(),
-            Err(e) => e.to_string(),
-        };
-        eprintln!("skipped: a small filesystem cannot be mounted here: {reason}");
-        None
-    }
-}
-
-impl Drop for Mounted {
-    fn drop(&mut self) {
-        let _ = Command::new("umount").arg(self.0.path()).status();
-    }
-}
+use tempfile::tempdir;
 
 /// The bake of `text` fails as the machine's failures do; the old one stands alone in `folder`.
 fn fails_and_leaves_the_old_bake(folder: &Path, text: &str, reason: &str) {
@@ -41,18 +18,18 @@ fn fails_and_leaves_the_old_bake(folder: &Path, text: &str, reason: &str) {
 #[test]
 fn a_full_disk() {
     let Some(disk) = Mounted::new("size=64k") else { return };
-    bake(&disk.0.path().join("mars"), "old").unwrap();
-    fails_and_leaves_the_old_bake(disk.0.path(), &"x".repeat(1 << 20), "mars/compact/x.exr: No space left");
+    bake(&disk.path().join("mars"), "old").unwrap();
+    fails_and_leaves_the_old_bake(disk.path(), &"x".repeat(1 << 20), "mars/compact/x.exr: No space left");
 }
 
 /// Root may write anywhere but on a filesystem that is mounted read-only.
 #[test]
 fn a_read_only_disk() {
     let Some(disk) = Mounted::new("size=64k") else { return };
-    bake(&disk.0.path().join("mars"), "old").unwrap();
-    let remount = Command::new("mount").args(["-o", "remount,ro"]).arg(disk.0.path()).status().unwrap();
+    bake(&disk.path().join("mars"), "old").unwrap();
+    let remount = Command::new("mount").args(["-o", "remount,ro"]).arg(disk.path()).status().unwrap();
     assert!(remount.success());
-    fails_and_leaves_the_old_bake(disk.0.path(), "new", "Read-only file system");
+    fails_and_leaves_the_old_bake(disk.path(), "new", "Read-only file system");
 }
 
 /// Needs no rights, unlike a full disk: a limit on the size of files fails the same write, in a process of
