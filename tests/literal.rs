@@ -1,18 +1,16 @@
 //! The literal Algorithm 1 against direct integration, and what must hold of it whatever its resolution.
 
+#[path = "common/constituents.rs"]
+mod constituents;
 mod direct;
-// The solver's test planets, of which this program uses the parts.
-#[allow(dead_code)]
-#[path = "solver/worlds.rs"]
-mod worlds;
 
+use constituents::{RAYLEIGH, constituent, exponential};
 use direct::Planet;
 use std::f64::consts::PI;
 use tyndall::isa::Isa;
 use tyndall::lanes::Lanes;
 use tyndall::medium::{Medium, PhaseFunction, Role};
 use tyndall::methods::literal::{Gather, Literal, Settings, bake, work};
-use worlds::{RAYLEIGH, constituent, exponential};
 
 /// A small world with a thick shell at two wavelengths: vertical optical depths 0.45 and 0.23.
 fn small_world() -> Medium {

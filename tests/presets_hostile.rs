@@ -4,13 +4,14 @@
 use serde_json::{Value, json};
 use tyndall::preset::{self, Planet};
 
-fn pointers(value: &Value, at: String, out: &mut Vec<String>) {
+/// Every place in a value; of lists longer than `longest` the ends and a middle, since tables of optics have
+/// hundreds of numbers alike.
+fn pointers(value: &Value, at: String, longest: usize, out: &mut Vec<String>) {
     match value {
-        Value::Object(map) => map.iter().for_each(|(k, v)| pointers(v, format!("{at}/{k}"), out)),
-        // Of long lists the ends and a middle: tables of optics have hundreds of numbers alike.
+        Value::Object(map) => map.iter().for_each(|(k, v)| pointers(v, format!("{at}/{k}"), longest, out)),
         Value::Array(list) => list.iter().enumerate().for_each(|(k, v)| {
-            if k < 3 || k + 2 > list.len() || k == list.len() / 2 {
-                pointers(v, format!("{at}/{k}"), out)
+            if list.len() <= longest || k < 3 || k + 2 > list.len() || k == list.len() / 2 {
+                pointers(v, format!("{at}/{k}"), longest, out)
             }
         }),
         _ => {}
@@ -58,7 +59,9 @@ fn no_value_gets_past_the_border_unchecked() {
         let text = std::fs::read_to_string(format!("presets/planets/{name}.json")).unwrap();
         let value: Value = serde_json::from_str(&text).unwrap();
         let mut places = Vec::new();
-        pointers(&value, String::new(), &mut places);
+        // Earth's presets are tried whole.
+        let longest = if ["earth", "earth-paper"].contains(&name) { usize::MAX } else { 6 };
+        pointers(&value, String::new(), longest, &mut places);
         for place in &places {
             for bad in &nasty {
                 let mut changed = value.clone();

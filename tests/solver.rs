@@ -2,6 +2,8 @@
 //! Algorithm 1, and what must hold of it whatever the planet.
 
 mod common;
+#[path = "common/constituents.rs"]
+mod constituents;
 
 mod solver {
     mod bits;

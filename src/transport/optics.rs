@@ -102,7 +102,7 @@ pub enum PhaseLanes {
     Other(Vec<PhaseFunction>),
 }
 
-/// Nodes of a tabulated phase function: at most degree 30 between them, 40 a wave.
+/// Nodes of a tabulated phase function, cut off at degree 19 or less: more than a hundred for each of its waves.
 const TABLE_NODES: usize = 1024;
 
 impl PhaseLanes {

@@ -1,9 +1,6 @@
 //! Atmospheres and radiances of another maker: Monte Carlo with the Mitsuba kernel of eradiate-mitsuba 0.5.0
 //! (integrator `volpath`, double precision), 66 points of view × 3 wavelengths for each of two atmospheres.
 
-// Each test program uses its own part of this module.
-#![allow(dead_code)]
-
 use serde_json::Value;
 use std::path::PathBuf;
 use tyndall::medium::{Constituent, DensityProfile, Medium, PhaseFunction, Role};

@@ -1,12 +1,12 @@
 //! Planets, resolutions and short ways to ask the solver, for the tests beside.
 
-use tyndall::medium::{Constituent, DensityProfile, Medium, PhaseFunction, Role};
+pub use crate::constituents::{RAYLEIGH, constituent, exponential};
+use tyndall::medium::{Constituent, Medium, PhaseFunction, Role};
 use tyndall::points::Point;
 use tyndall::transport::exact::Radiance;
 use tyndall::transport::solve::{LevelCounts, Orders, Resolution, Solution};
 use tyndall::transport::view::View;
 
-pub const RAYLEIGH: PhaseFunction = PhaseFunction::Rayleigh { king_factor: 1.0 };
 pub const CONVERGED: Orders = Orders::Converged { tolerance: 1e-4 };
 
 /// Enough for a per mille by day, and a fifth of the work of the tables' resolution.
@@ -19,29 +19,6 @@ pub const COARSE: Resolution = Resolution {
     sunlight_nodes: 128,
     degree: 8,
 };
-
-/// A constituent at `scattering.len()` wavelengths.
-pub fn constituent(
-    role: Role,
-    phase: PhaseFunction,
-    density: DensityProfile,
-    scattering: &[f64],
-    absorption: &[f64],
-) -> Constituent {
-    Constituent {
-        name: format!("{role:?}"),
-        role,
-        density,
-        scattering: scattering.to_vec(),
-        absorption: absorption.to_vec(),
-        similarity_g: vec![phase.mean_cosine(); scattering.len()],
-        phase: vec![phase; scattering.len()],
-    }
-}
-
-pub fn exponential(scale_height: f64) -> DensityProfile {
-    DensityProfile::Exponential { scale_height }
-}
 
 /// A planet of one albedo; a wavelength for each coefficient of its constituents (one without any).
 pub fn planet(ground_radius: f64, height: f64, albedo: f64, constituents: Vec<Constituent>) -> Medium {
