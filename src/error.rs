@@ -23,6 +23,9 @@ pub enum Error {
     /// A number that must be finite is not: names the table and the place in it.
     #[error("{table}: not a finite number at {place}; nothing was written")]
     NotFinite { table: String, place: String },
+    /// Of several pieces of work some failed, each of which has been told; `code` is the highest of theirs.
+    #[error("{failed} of {of} failed")]
+    Several { failed: usize, of: usize, code: u8 },
     /// The user stopped the run.
     #[error("interrupted; what stood in the output folder before is untouched")]
     Interrupted,
@@ -36,6 +39,7 @@ impl Error {
     pub fn exit_code(&self) -> u8 {
         match self {
             Error::Check(_) => 1,
+            Error::Several { code, .. } => *code,
             Error::Value { .. } | Error::File { .. } | Error::Argument(_) => 2,
             Error::Machine { .. } | Error::NotFinite { .. } | Error::Interrupted => 3,
         }

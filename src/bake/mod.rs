@@ -6,6 +6,7 @@ pub mod elek2010;
 mod extinction;
 mod files;
 mod literal;
+pub mod memory;
 pub mod palette;
 mod pictures;
 mod pipeline;

@@ -33,16 +33,30 @@ const MOST_THREADS: usize = 1024;
 
 /// Runs with a number of threads, all of the machine's where none is given.
 pub fn with_threads<R: Send>(threads: Option<usize>, work: impl FnOnce() -> R + Send) -> Result<R> {
-    match threads {
+    match check_threads(threads)? {
         None => Ok(work()),
-        Some(0) => Err(Error::Argument("--threads 0: at least one is needed".into())),
-        Some(n) if n > MOST_THREADS => {
-            Err(Error::Argument(format!("--threads {n}: {MOST_THREADS} are the most")))
-        }
         Some(n) => {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
             Ok(pool.map_err(|e| Error::Argument(format!("--threads {n}: {e}")))?.install(work))
         }
+    }
+}
+
+/// Gives this process so many threads for all work to come, all of the machine's where none is given; to be called
+/// once, before any parallel work.
+pub fn share_threads(threads: Option<usize>) -> Result<()> {
+    let Some(n) = check_threads(threads)? else { return Ok(()) };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build_global();
+    pool.map_err(|e| Error::Argument(format!("--threads {n}: {e}")))
+}
+
+fn check_threads(threads: Option<usize>) -> Result<Option<usize>> {
+    match threads {
+        Some(0) => Err(Error::Argument("--threads 0: at least one is needed".into())),
+        Some(n) if n > MOST_THREADS => {
+            Err(Error::Argument(format!("--threads {n}: {MOST_THREADS} are the most")))
+        }
+        other => Ok(other),
     }
 }
 

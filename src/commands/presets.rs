@@ -1,10 +1,12 @@
 //! `tyndall presets`: what is shipped, what a preset means, and whether files are presets.
 
+use super::presets_colour::{Colours, deep_water, zenith};
 use super::presets_show::{as_json, as_text};
 use super::presets_water;
 use super::text::print;
 use crate::error::{Error, Result};
 use crate::preset;
+use crate::preset::schema::{Kind, schema};
 use std::path::{Path, PathBuf};
 
 /// List, show and check presets of planets and waters.
@@ -26,7 +28,8 @@ pub enum Action {
         #[arg(long)]
         json: bool,
     },
-    /// A preset in SI and the physics it implies: optical depths, scale heights, asymmetry
+    /// A preset in SI and the physics it implies: optical depths, scale heights, asymmetry, colour of the zenith
+    /// (of deep water)
     #[command(
         before_help = "Example: tyndall presets show earth --set constituents.aerosol.density_factor=10"
     )]
@@ -42,12 +45,21 @@ pub enum Action {
         /// JSON with the whole resolved preset
         #[arg(long)]
         json: bool,
+        /// Leave out the colour, which takes a solve: seconds where the air is thick
+        #[arg(long)]
+        no_colour: bool,
     },
     /// Read preset files (folders: their *.json) and say for each whether it holds; exit code 2 if one does not
     #[command(before_help = "Example: tyndall presets check my-planets/")]
     Check {
         /// Files or folders; the shipped presets without any
         paths: Vec<PathBuf>,
+    },
+    /// The JSON Schema (draft 2020-12) of preset files, for editors
+    #[command(before_help = "Example: tyndall presets schema planet")]
+    Schema {
+        /// Of which presets [default: of both]
+        kind: Option<Kind>,
     },
 }
 
@@ -56,8 +68,11 @@ pub fn run(args: &Args) -> Result<()> {
     match &args.action {
         None => list(false),
         Some(Action::List { json }) => list(*json),
-        Some(Action::Show { preset, set, wavelengths, json }) => show(preset, set, wavelengths, *json),
+        Some(Action::Show { preset, set, wavelengths, json, no_colour }) => {
+            show(preset, set, wavelengths, *json, !no_colour)
+        }
         Some(Action::Check { paths }) => check(paths),
+        Some(Action::Schema { kind }) => print(&format!("{:#}\n", schema(*kind))),
     }
 }
 
@@ -78,20 +93,36 @@ fn list(json: bool) -> Result<()> {
     print(&shipped.iter().map(line).collect::<String>())
 }
 
-fn show(name: &str, set: &[String], wavelengths: &[f64], json: bool) -> Result<()> {
+fn show(name: &str, set: &[String], wavelengths: &[f64], json: bool, colour: bool) -> Result<()> {
     if let Some(w) = wavelengths.iter().find(|w| !(200.0..=4000.0).contains(*w)) {
         return Err(Error::Argument(format!("--wavelengths {w}: must be between 200 and 4000 nm")));
     }
     if preset::is_water(name) {
         let water = preset::load_water(name, set)?;
-        return print(&if json {
+        let colours = if colour { Some(deep_water(&water)?) } else { None };
+        let physics = if json {
             presets_water::as_json(&water, wavelengths)
         } else {
             presets_water::as_text(&water, wavelengths)
-        });
+        };
+        return print(&with_colours(physics, colours, json)?);
     }
     let planet = preset::load(name, set)?;
-    print(&if json { as_json(&planet, wavelengths) } else { as_text(&planet, wavelengths) })
+    let colours = colour.then(|| zenith(&planet));
+    let physics = if json { as_json(&planet, wavelengths) } else { as_text(&planet, wavelengths) };
+    print(&with_colours(physics, colours, json)?)
+}
+
+/// Adds colours to what is told of a preset: at the end of a text, in JSON under `physics`.
+fn with_colours(physics: String, colours: Option<Colours>, json: bool) -> Result<String> {
+    let Some(colours) = colours else { return Ok(physics) };
+    if !json {
+        return Ok(physics + &colours.text);
+    }
+    let mut report: serde_json::Value =
+        serde_json::from_str(&physics).map_err(|e| Error::Argument(format!("report of a preset: {e}")))?;
+    report["physics"][colours.key] = colours.json;
+    Ok(format!("{report:#}\n"))
 }
 
 fn check(paths: &[PathBuf]) -> Result<()> {

@@ -108,6 +108,12 @@ pub fn spectrum_names() -> impl Iterator<Item = &'static str> {
     SPECTRA.iter().map(|s| s.0)
 }
 
+/// Names of the shipped spectra of a quantity: those whose header says so.
+pub fn spectra_of(quantity: &str) -> Vec<&'static str> {
+    let header = format!("wavelength_nm,{quantity}");
+    SPECTRA.iter().filter(|s| s.1.lines().any(|line| line.trim() == header)).map(|s| s.0).collect()
+}
+
 /// A shipped spectrum by name, or a CSV file by a name that ends in `.csv`, beside the preset or else from the
 /// current folder. The file has a
 /// line `# source: …`, then a header `wavelength_nm,<quantity>`, which must be `quantity`, then rows.

@@ -4,6 +4,7 @@
 //! messages. [`Planet`] is what the rest of the program sees: every number checked, in SI, named spectra looked
 //! up. The modules `read_*` are the border, and the only place that knows the units of files.
 
+mod bounds;
 mod coefficient;
 mod fournier_forand;
 mod json;
@@ -20,6 +21,7 @@ mod read_planet;
 mod read_profile;
 mod read_spectrum;
 mod read_water;
+pub mod schema;
 mod water;
 
 pub use coefficient::Coefficient;
@@ -45,10 +47,7 @@ pub fn load(name_or_path: &str, set: &[String]) -> Result<Planet> {
 /// A water by the name of a shipped preset (`clear-ocean`) or by the path of a JSON file; as [`load`].
 pub fn load_water(name_or_path: &str, set: &[String]) -> Result<Water> {
     let (file, text) = find_water(name_or_path)?;
-    let value = changed(&file, &text, set)?;
-    let root = Raw::root(&file, &value);
-    root.check_sources()?;
-    read_water::water(&root)
+    read_water(&file, &text, set)
 }
 
 /// Whether a name or path means a water and not a planet: a shipped water, or a file with its mark.
@@ -72,6 +71,14 @@ pub fn read(file: &str, text: &str, set: &[String]) -> Result<Planet> {
     let root = Raw::root(file, &value);
     root.check_sources()?;
     read_planet::planet(&root)
+}
+
+/// A water from JSON text, as [`read`].
+pub fn read_water(file: &str, text: &str, set: &[String]) -> Result<Water> {
+    let value = changed(file, text, set)?;
+    let root = Raw::root(file, &value);
+    root.check_sources()?;
+    read_water::water(&root)
 }
 
 fn changed(file: &str, text: &str, set: &[String]) -> Result<serde_json::Value> {

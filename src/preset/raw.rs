@@ -1,10 +1,11 @@
 //! A value of a preset file with the path that leads to it, so that every complaint says where.
 
+use super::bounds::Bounds;
 use crate::error::{Error, Result};
 use serde_json::{Map, Value};
 
 /// Longest length of a preset, m: more than the radius of the largest star.
-const MOST_METRES: f64 = 1e13;
+pub const MOST_METRES: f64 = 1e13;
 
 /// A JSON value, the file it stands in and the path to it (`constituents[1].phase.g`).
 #[derive(Clone, Debug)]
@@ -49,6 +50,8 @@ impl<'a> Raw<'a> {
 
     /// Refuses keys that are not known here, naming the nearest; `source` is known everywhere.
     pub fn only(&self, known: &[&str]) -> Result<()> {
+        #[cfg(test)]
+        super::schema::record::note(known);
         let known_here = || known.iter().copied().chain(["source"]);
         for (key, value) in self.map()? {
             if !known_here().any(|k| k == key) {
@@ -119,14 +122,10 @@ impl<'a> Raw<'a> {
         }
     }
 
-    /// A number for which `holds`; `what` says what it must be.
-    pub fn number_that(&self, what: &str, holds: impl Fn(f64) -> bool) -> Result<f64> {
+    /// A number inside bounds.
+    pub fn number_in(&self, bounds: Bounds) -> Result<f64> {
         let v = self.number()?;
-        if holds(v) { Ok(v) } else { Err(self.refuse(format!("must be {what}"))) }
-    }
-
-    pub fn positive(&self) -> Result<f64> {
-        self.number_that("greater than 0", |v| v > 0.0)
+        if bounds.hold(v) { Ok(v) } else { Err(self.refuse(format!("must be {}", bounds.text))) }
     }
 
     pub fn items(&self) -> Result<Vec<Raw<'a>>> {
@@ -135,9 +134,9 @@ impl<'a> Raw<'a> {
         Ok(list.iter().enumerate().map(item).collect())
     }
 
-    /// A list of numbers for which `holds`; a bad one is named by its place.
-    pub fn numbers_that(&self, what: &str, holds: impl Fn(f64) -> bool) -> Result<Vec<f64>> {
-        self.items()?.iter().map(|item| item.number_that(what, &holds)).collect()
+    /// A list of numbers inside bounds; a bad one is named by its place.
+    pub fn numbers_in(&self, bounds: Bounds) -> Result<Vec<f64>> {
+        self.items()?.iter().map(|item| item.number_in(bounds)).collect()
     }
 
     /// A list of at least `least` numbers, each greater than the one before.
@@ -157,12 +156,12 @@ impl<'a> Raw<'a> {
         Ok(list)
     }
 
-    /// Key `{stem}_m` or `{stem}_km`, whichever is given, as a length in metres for which `holds` (and which is
-    /// no longer than any star is wide).
-    pub fn length(&self, stem: &str, what: &str, holds: impl Fn(f64) -> bool) -> Result<f64> {
+    /// Key `{stem}_m` or `{stem}_km`, whichever is given, as a length in metres (no longer than any star is wide)
+    /// whose number is inside bounds.
+    pub fn length(&self, stem: &str, bounds: Bounds) -> Result<f64> {
         let (metres, kilometres) = (format!("{stem}_m"), format!("{stem}_km"));
         let (unit, raw) = self.one_of(&[&kilometres, &metres])?;
-        let length = raw.number_that(what, holds)? * [1e3, 1.0][unit];
+        let length = raw.number_in(bounds)? * [1e3, 1.0][unit];
         if length > MOST_METRES {
             return Err(raw.refuse("must be less than 1e13 m"));
         }
@@ -224,6 +223,7 @@ fn brief(value: &Value) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::bounds::POSITIVE;
     use super::*;
     use serde_json::json;
 
@@ -234,7 +234,8 @@ mod tests {
         let root = Raw::root("a.json", &value);
         let item = root.need("constituents").unwrap().items().unwrap().remove(0);
         let g = item.need("phase").unwrap().need("g").unwrap();
-        let error = g.number_that("between -1 and 1", |v| v.abs() < 1.0).unwrap_err().to_string();
+        let bounds = Bounds::between(-1.0, 1.0, "between -1 and 1");
+        let error = g.number_in(bounds).unwrap_err().to_string();
         assert_eq!(error, "a.json: constituents[0].phase.g = 1.5: must be between -1 and 1");
         let error = item.only(&["phase", "density_factor", "profile"]).unwrap_err().to_string();
         assert!(error.contains("constituents[0].densty_factor = 1"), "{error}");
@@ -256,7 +257,7 @@ mod tests {
     /// Lengths come in metres or kilometres by their key, never in both.
     #[test]
     fn units_are_in_the_key() {
-        let length = |v: Value| Raw::root("a", &v).length("top", "greater than 0", |v| v > 0.0).ok();
+        let length = |v: Value| Raw::root("a", &v).length("top", POSITIVE).ok();
         assert_eq!(length(json!({"top_km": 2.5})), Some(2500.0));
         assert_eq!(length(json!({"top_m": 2.5})), Some(2.5));
         assert_eq!(length(json!({"top_m": 2.5, "top_km": 1})), None);

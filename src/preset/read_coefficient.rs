@@ -1,16 +1,23 @@
 //! `scattering`, `absorption`, `extinction` of a constituent → [`Coefficient`].
 
+use super::bounds::{Bounds, NOT_NEGATIVE, POSITIVE};
 use super::coefficient::Coefficient;
 use super::raw::Raw;
 use super::read_spectrum::{CROSS_SECTION, KING_FACTOR, REFRACTIVE_INDEX, spectrum, table};
 use crate::error::Result;
 use crate::spectrum::Spectrum;
 
-const KINDS: [&str; 6] =
+pub const KINDS: [&str; 6] =
     ["constant", "table", "power_law", "refractive_index", "bodhaine1999", "cross_section"];
 
 /// Units in which a coefficient may be stated; the last is the vertical optical depth of the whole shell.
-const UNITS: [&str; 3] = ["per_m", "per_km", "optical_depth"];
+pub const UNITS: [&str; 3] = ["per_m", "per_km", "optical_depth"];
+
+/// Ångström exponents; gas has 4.
+pub const EXPONENT: Bounds = Bounds::within(-10.0, 10.0, "between -10 and 10");
+pub const CO2_PPM: Bounds = Bounds::within(0.0, 1e4, "between 0 and 10000 (air)");
+/// Keys of a cross-section's amount.
+pub const AMOUNTS: [&str; 3] = ["number_density_per_m3", "column_per_m2", "column_du"];
 
 /// Molecules in a square metre for one Dobson unit (2.6868e20: 1e-5 m at 273.15 K and 1013.25 hPa).
 const DOBSON_UNIT: f64 = 2.686_8e20;
@@ -22,25 +29,23 @@ pub fn coefficient(raw: &Raw, column: f64) -> Result<Coefficient> {
         0 => {
             raw.only(&["kind", "per_m", "per_km", "optical_depth"])?;
             let (unit, value) = raw.one_of(&UNITS)?;
-            let value = value.number_that("0 or more", |v| v >= 0.0)?;
+            let value = value.number_in(NOT_NEGATIVE)?;
             Ok(Coefficient::Table { spectrum_per_m: Spectrum::constant(value * factor(raw, unit, column)?) })
         }
         1 => {
             raw.only(&["kind", "wavelengths_nm", "per_m", "per_km", "optical_depth"])?;
             let (unit, _) = raw.one_of(&UNITS)?;
-            let values = table(raw, UNITS[unit], "0 or more", |v| v >= 0.0)?;
+            let values = table(raw, UNITS[unit], NOT_NEGATIVE)?;
             Ok(Coefficient::Table { spectrum_per_m: values.scaled(factor(raw, unit, column)?) })
         }
         2 => {
             raw.only(&["kind", "per_m", "per_km", "optical_depth", "at_nm", "angstrom_exponent"])?;
             let (unit, value) = raw.one_of(&UNITS)?;
-            let value = value.number_that("0 or more", |v| v >= 0.0)?;
+            let value = value.number_in(NOT_NEGATIVE)?;
             Ok(Coefficient::PowerLaw {
                 per_m: value * factor(raw, unit, column)?,
-                at_nm: raw.need("at_nm")?.positive()?,
-                angstrom_exponent: raw
-                    .need("angstrom_exponent")?
-                    .number_that("between -10 and 10", |v| v.abs() <= 10.0)?,
+                at_nm: raw.need("at_nm")?.number_in(POSITIVE)?,
+                angstrom_exponent: raw.need("angstrom_exponent")?.number_in(EXPONENT)?,
             })
         }
         3 => refractive_index(raw),
@@ -57,14 +62,14 @@ pub fn coefficient(raw: &Raw, column: f64) -> Result<Coefficient> {
 
 /// `co2_ppm` of the formulas for dry air.
 pub fn co2_ppm(raw: &Raw) -> Result<f64> {
-    raw.need("co2_ppm")?.number_that("between 0 and 10000 (air)", |v| (0.0..=1e4).contains(&v))
+    raw.need("co2_ppm")?.number_in(CO2_PPM)
 }
 
 fn refractive_index(raw: &Raw) -> Result<Coefficient> {
     const REFERENCE: &str = "reference_number_density_per_m3";
     raw.only(&["kind", "refractive_index", "king_factor", "number_density_per_m3", REFERENCE])?;
     let here = number_density(raw)?;
-    let reference = raw.get(REFERENCE)?.map_or(Ok(here), |r| r.positive())?;
+    let reference = raw.get(REFERENCE)?.map_or(Ok(here), |r| r.number_in(POSITIVE))?;
     if reference <= 0.0 {
         return Err(raw.refuse("the number density that belongs to the refractive index must exceed 0"));
     }
@@ -78,10 +83,9 @@ fn refractive_index(raw: &Raw) -> Result<Coefficient> {
 }
 
 fn cross_section(raw: &Raw, column: f64) -> Result<Coefficient> {
-    const AMOUNTS: [&str; 3] = ["number_density_per_m3", "column_per_m2", "column_du"];
     raw.only(&["kind", "cross_section_m2", AMOUNTS[0], AMOUNTS[1], AMOUNTS[2]])?;
     let (unit, amount) = raw.one_of(&AMOUNTS)?;
-    let amount = amount.number_that("0 or more", |v| v >= 0.0)?;
+    let amount = amount.number_in(NOT_NEGATIVE)?;
     let number_density_per_m3 = match unit {
         0 => amount,
         1 => amount * per_column(raw, column)?,
@@ -92,7 +96,7 @@ fn cross_section(raw: &Raw, column: f64) -> Result<Coefficient> {
 }
 
 fn number_density(raw: &Raw) -> Result<f64> {
-    raw.need("number_density_per_m3")?.number_that("0 or more", |v| v >= 0.0)
+    raw.need("number_density_per_m3")?.number_in(NOT_NEGATIVE)
 }
 
 /// What turns the unit into 1/m.

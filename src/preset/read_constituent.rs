@@ -1,5 +1,6 @@
 //! An item of `constituents` → [`Substance`].
 
+use super::bounds::NOT_NEGATIVE;
 use super::coefficient::Coefficient;
 use super::phase::PhaseLaw;
 use super::planet::{Optics, Substance};
@@ -11,6 +12,9 @@ use super::read_spectrum::{SHARE, held, spectrum};
 use crate::error::Result;
 use crate::medium::Role;
 use crate::spectrum::{Spectrum, fine_grid};
+
+/// What a constituent can be to the layouts: [`Role::Gas`], [`Role::Aerosol`].
+pub const ROLES: [&str; 2] = ["gas", "aerosol"];
 
 /// The constituent, and warnings about what its tables leave open; `height` is that of the shell, m.
 pub fn constituent(raw: &Raw, height: f64) -> Result<(Substance, Vec<String>)> {
@@ -31,12 +35,12 @@ pub fn constituent(raw: &Raw, height: f64) -> Result<(Substance, Vec<String>)> {
     }
     let profile = profile(&raw.need("profile")?)?;
     let optics = optics(raw, profile.column(0.0, height))?;
-    let factor = raw.get("density_factor")?.map(|f| f.number_that("0 or more", |v| v >= 0.0));
+    let factor = raw.get("density_factor")?.map(|f| f.number_in(NOT_NEGATIVE));
     let substance = Substance {
         name: name.text()?.to_string(),
-        role: [Role::Gas, Role::Aerosol][raw.need("role")?.choice(&["gas", "aerosol"])?],
+        role: [Role::Gas, Role::Aerosol][raw.need("role")?.choice(&ROLES)?],
         density_factor: factor.unwrap_or(Ok(1.0))?,
-        phase: phase_of(raw, &optics)?,
+        phase: phase_of(raw)?,
         optics,
         profile,
     };
@@ -81,14 +85,14 @@ fn optics(raw: &Raw, column: f64) -> Result<Optics> {
     }
 }
 
-/// A phase function may be left out where nothing is scattered.
-fn phase_of(raw: &Raw, optics: &Optics) -> Result<PhaseLaw> {
-    match (raw.get("phase")?, optics) {
-        (Some(given), _) => phase(&given),
-        (None, Optics::ScatteringAndAbsorption { scattering, .. }) if *scattering == Coefficient::zero() => {
+/// A phase function may be left out where no scattering is stated.
+fn phase_of(raw: &Raw) -> Result<PhaseLaw> {
+    match raw.get("phase")? {
+        Some(given) => phase(&given),
+        None if raw.get("scattering")?.is_none() && raw.get("extinction")?.is_none() => {
             Ok(PhaseLaw::Isotropic)
         }
-        (None, _) => Err(raw.refuse("`phase` is missing")),
+        None => Err(raw.refuse("`phase` is missing")),
     }
 }
 

@@ -1,14 +1,15 @@
 //! `phase` of a constituent → [`PhaseLaw`].
 
+use super::bounds::NOT_NEGATIVE;
 use super::phase::{KingFactor, PhaseLaw, Stated};
 use super::raw::Raw;
 use super::read_coefficient::co2_ppm;
-use super::read_spectrum::{ASYMMETRY, KING_FACTOR, SHARE, spectrum};
+use super::read_spectrum::{ASYMMETRY, KING_FACTOR, SHARE, spectrum, wavelengths};
 use crate::error::Result;
 use crate::medium::PhaseFunction;
 use crate::spectrum::Spectrum;
 
-const KINDS: [&str; 6] = [
+pub const KINDS: [&str; 6] = [
     "isotropic",
     "rayleigh",
     "henyey_greenstein",
@@ -16,6 +17,9 @@ const KINDS: [&str; 6] = [
     "double_henyey_greenstein",
     "tabulated",
 ];
+
+/// The King factor of air as a formula.
+pub const AIR_KING_FACTOR: &str = "bodhaine1999";
 
 /// The phase function at every wavelength.
 pub fn phase(raw: &Raw) -> Result<PhaseLaw> {
@@ -46,7 +50,7 @@ fn rayleigh(raw: &Raw) -> Result<PhaseLaw> {
     raw.only(&["kind", "king_factor", "co2_ppm"])?;
     let king_factor = match raw.get("king_factor")? {
         None => KingFactor::Table { spectrum: Spectrum::constant(1.0) },
-        Some(law) if law.is_text() && law.text()? == "bodhaine1999" => {
+        Some(law) if law.is_text() && law.text()? == AIR_KING_FACTOR => {
             return Ok(PhaseLaw::Rayleigh {
                 king_factor: KingFactor::Bodhaine1999 { co2_ppm: co2_ppm(raw)? },
             });
@@ -85,7 +89,7 @@ fn tabulated(raw: &Raw) -> Result<PhaseLaw> {
         None => (vec![550.0], vec![row(&values, &cosines)?]),
         Some(w) => {
             let rows = values.items()?.iter().map(|r| row(r, &cosines)).collect::<Result<Vec<_>>>()?;
-            (w.rising(1)?, rows)
+            (wavelengths(&w)?, rows)
         }
     };
     if rows.len() != wavelengths_nm.len() {
@@ -96,7 +100,7 @@ fn tabulated(raw: &Raw) -> Result<PhaseLaw> {
 
 /// One row, brought to the order of the cosines and normalised.
 fn row(raw: &Raw, cosines: &[f64]) -> Result<Vec<f64>> {
-    let mut values = raw.numbers_that("0 or more", |v| v >= 0.0)?;
+    let mut values = raw.numbers_in(NOT_NEGATIVE)?;
     if values.len() != cosines.len() {
         return Err(raw.refuse(format!("{} values for {} angles", values.len(), cosines.len())));
     }

@@ -1,5 +1,6 @@
 //! The top level of a preset: name, ground, top, star, constituents → [`Planet`].
 
+use super::bounds::{Bounds, POSITIVE};
 use super::planet::{Planet, Star};
 use super::raw::Raw;
 use super::read_constituent::constituent;
@@ -12,16 +13,23 @@ use std::f64::consts::PI;
 /// Astronomical unit, m (IAU 2012 Resolution B2, exact).
 const ASTRONOMICAL_UNIT: f64 = 149_597_870_700.0;
 
+pub const DISTANCE_AU: Bounds = Bounds::up_to(0.0, 1e6, "greater than 0, and 1e6 at the most");
+pub const ANGULAR_RADIUS_DEG: Bounds = Bounds::between(0.0, 90.0, "greater than 0 and less than 90");
+pub const BLACK_BODY_K: Bounds = Bounds::within(100.0, 1e6, "between 100 and 1000000");
+/// What the name of a planet or water may consist of, as a regular expression.
+pub const NAME: &str = "^[a-z0-9-]+$";
+
 /// The whole planet.
 pub fn planet(raw: &Raw) -> Result<Planet> {
-    raw.only(&["name", "description", "ground", "top", "star", "constituents"])?;
+    raw.only(&[SCHEMA_KEY, "name", "description", "ground", "top", "star", "constituents"])?;
+    schema_key(raw)?;
     let ground = raw.need("ground")?;
     ground.only(&["radius_km", "radius_m", "albedo"])?;
-    let ground_radius = ground.length("radius", "greater than 0", |v| v > 0.0)?;
+    let ground_radius = ground.length("radius", POSITIVE)?;
     let ground_albedo = spectrum(&ground.need("albedo")?, SHARE)?;
     let top = raw.need("top")?;
     top.only(&["height_km", "height_m"])?;
-    let height = top.length("height", "greater than 0", |v| v > 0.0)?;
+    let height = top.length("height", POSITIVE)?;
     if ground_radius + height <= ground_radius {
         return Err(top.refuse("the shell is too thin for its radius to be told from the ground's"));
     }
@@ -62,6 +70,13 @@ pub fn planet(raw: &Raw) -> Result<Planet> {
     Ok(planet)
 }
 
+/// The key by which an editor finds the schema of a file; it means nothing to the preset.
+pub const SCHEMA_KEY: &str = "$schema";
+
+pub fn schema_key(raw: &Raw) -> Result<()> {
+    raw.get(SCHEMA_KEY)?.map_or(Ok(()), |key| key.text().map(drop))
+}
+
 /// The name becomes a folder's, so only letters that every file system and shell takes are let in.
 pub fn name(raw: &Raw) -> Result<String> {
     let raw = raw.need("name")?;
@@ -84,28 +99,23 @@ fn star(raw: &Raw) -> Result<Star> {
         "angular_radius_deg",
         "limb_darkening",
     ])?;
-    let distance = raw
-        .need("distance_au")?
-        .number_that("greater than 0, and 1e6 at the most", |v| v > 0.0 && v <= 1e6)?
-        * ASTRONOMICAL_UNIT;
+    let distance = raw.need("distance_au")?.number_in(DISTANCE_AU)? * ASTRONOMICAL_UNIT;
     let angular_radius = angular_radius(raw, distance)?;
     let limb_darkening = raw.get("limb_darkening")?;
     Ok(Star {
         irradiance: irradiance(raw, distance, angular_radius)?,
         angular_radius,
         distance,
-        limb_darkening: limb_darkening.map_or(Ok(0.0), |l| l.number_that(SHARE.bounds, SHARE.holds))?,
+        limb_darkening: limb_darkening.map_or(Ok(0.0), |l| l.number_in(SHARE.bounds))?,
     })
 }
 
 fn angular_radius(raw: &Raw, distance: f64) -> Result<f64> {
     let (which, given) = raw.one_of(&["angular_radius_deg", "radius_km", "radius_m"])?;
     if which == 0 {
-        return Ok(given
-            .number_that("greater than 0 and less than 90", |v| v > 0.0 && v < 90.0)?
-            .to_radians());
+        return Ok(given.number_in(ANGULAR_RADIUS_DEG)?.to_radians());
     }
-    let radius = given.positive()? * [1e3, 1.0][which - 1];
+    let radius = given.number_in(POSITIVE)? * [1e3, 1.0][which - 1];
     if radius >= distance {
         return Err(given.refuse("the star would reach its planet"));
     }
@@ -121,7 +131,7 @@ fn irradiance(raw: &Raw, distance: f64, angular_radius: f64) -> Result<Spectrum>
         if let Some(unused) = measured_at {
             return Err(unused.refuse("belongs to `spectrum`, but the star is a black body"));
         }
-        let temperature = given.number_that("between 100 and 1000000", |v| (100.0..=1e6).contains(&v))?;
+        let temperature = given.number_in(BLACK_BODY_K)?;
         let sine = libm::sin(angular_radius);
         let grid = (OBSERVER_RANGE.0..=OBSERVER_RANGE.1).map(|w| w as f64).collect();
         let per_nm = PI * sine * sine * 1e-9;
@@ -131,9 +141,9 @@ fn irradiance(raw: &Raw, distance: f64, angular_radius: f64) -> Result<Spectrum>
         spectrum(&given, IRRADIANCE)?
     } else {
         given.only(&["wavelengths_nm", IRRADIANCE.column])?;
-        table(&given, IRRADIANCE.column, IRRADIANCE.bounds, IRRADIANCE.holds)?
+        table(&given, IRRADIANCE.column, IRRADIANCE.bounds)?
     };
-    let measured_at = raw.need("spectrum_at_au")?.positive()?;
+    let measured_at = raw.need("spectrum_at_au")?.number_in(POSITIVE)?;
     let ratio = measured_at * ASTRONOMICAL_UNIT / distance;
     Ok(spectrum.scaled(ratio * ratio))
 }

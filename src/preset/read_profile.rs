@@ -1,17 +1,18 @@
 //! `profile` of a constituent → [`DensityProfile`].
 
+use super::bounds::{Bounds, NOT_NEGATIVE, POSITIVE};
 use super::raw::Raw;
 use crate::error::Result;
 use crate::medium::DensityProfile;
 
-const KINDS: [&str; 5] = ["exponential", "tent", "layer", "linear", "log_linear"];
+pub const KINDS: [&str; 5] = ["exponential", "tent", "layer", "linear", "log_linear"];
 
 /// The density profile, altitudes in m over the ground.
 pub fn profile(raw: &Raw) -> Result<DensityProfile> {
     match raw.need("kind")?.choice(&KINDS)? {
         0 => {
             raw.only(&["kind", "scale_height_km", "scale_height_m"])?;
-            let scale_height = raw.length("scale_height", "greater than 0", |v| v > 0.0)?;
+            let scale_height = raw.length("scale_height", POSITIVE)?;
             Ok(DensityProfile::Exponential { scale_height })
         }
         1 => {
@@ -31,20 +32,20 @@ pub fn profile(raw: &Raw) -> Result<DensityProfile> {
             }
             Ok(DensityProfile::Layer { bottom, top })
         }
-        3 => Ok(DensityProfile::Linear { nodes: nodes(raw, "0 or more", |v| v >= 0.0)? }),
-        _ => Ok(DensityProfile::LogLinear { nodes: nodes(raw, "greater than 0", |v| v > 0.0)? }),
+        3 => Ok(DensityProfile::Linear { nodes: nodes(raw, NOT_NEGATIVE)? }),
+        _ => Ok(DensityProfile::LogLinear { nodes: nodes(raw, POSITIVE)? }),
     }
 }
 
 fn altitude(raw: &Raw, stem: &str) -> Result<f64> {
-    raw.length(stem, "0 or more", |v| v >= 0.0)
+    raw.length(stem, NOT_NEGATIVE)
 }
 
-fn nodes(raw: &Raw, bounds: &str, holds: impl Fn(f64) -> bool) -> Result<Vec<(f64, f64)>> {
+fn nodes(raw: &Raw, bounds: Bounds) -> Result<Vec<(f64, f64)>> {
     raw.only(&["kind", "altitudes_km", "altitudes_m", "densities"])?;
     let (unit, altitudes) = raw.one_of(&["altitudes_km", "altitudes_m"])?;
     let densities = raw.need("densities")?;
-    let (z, d) = (altitudes.rising(2)?, densities.numbers_that(bounds, holds)?);
+    let (z, d) = (altitudes.rising(2)?, densities.numbers_in(bounds)?);
     if z[0] < 0.0 {
         return Err(altitudes.refuse("altitudes must be 0 or more"));
     }

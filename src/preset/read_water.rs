@@ -1,22 +1,29 @@
 //! A preset of water: index, pure water, constituents, bed → [`Water`].
 
 use super::Coefficient;
+use super::bounds::{Bounds, NOT_NEGATIVE, POSITIVE};
 use super::fournier_forand::{BACKSCATTER, fournier_forand};
 use super::phase::{KingFactor, PhaseLaw};
 use super::raw::Raw;
 use super::read_coefficient::coefficient;
 use super::read_phase::phase;
-use super::read_planet::name;
+use super::read_planet::{SCHEMA_KEY, name, schema_key};
 use super::read_spectrum::{Quantity, SHARE, held, spectrum};
 use super::water::{Water, WaterLaw, WaterSubstance};
 use crate::error::Result;
 use crate::spectrum::Spectrum;
 
-const INDEX: Quantity =
-    Quantity { column: "refractive_index", bounds: "between 1 and 2.5", holds: |v| (1.0..=2.5).contains(&v) };
-const PER_M: Quantity = Quantity { column: "per_m", bounds: "0 or more", holds: |v| v >= 0.0 };
-const EXPONENT: Quantity =
-    Quantity { column: "exponent", bounds: "between 0 and 2", holds: |v| (0.0..=2.0).contains(&v) };
+pub const INDEX: Quantity =
+    Quantity { column: "refractive_index", bounds: Bounds::within(1.0, 2.5, "between 1 and 2.5") };
+pub const PER_M: Quantity = Quantity { column: "per_m", bounds: NOT_NEGATIVE };
+pub const EXPONENT: Quantity =
+    Quantity { column: "exponent", bounds: Bounds::within(0.0, 2.0, "between 0 and 2") };
+pub const LARGEST_DEPTH_M: Bounds = Bounds::up_to(0.0, 11_000.0, "over 0 and at most 11000 m");
+pub const SLOPE_PER_NM: Bounds = Bounds::within(-0.1, 0.1, "between -0.1 and 0.1");
+pub const CHLOROPHYLL: Bounds = Bounds::up_to(0.0, 1000.0, "over 0 and at most 1000 mg/m3");
+pub const BACKSCATTER_FRACTION: Bounds =
+    Bounds::within(BACKSCATTER.0, BACKSCATTER.1, "between 0.001 and 0.05");
+pub const DEPOLARISATION: Bounds = Bounds::within(0.0, 0.5, "between 0 and 0.5");
 
 /// Keys that tell a water from a planet.
 pub const MARK: &str = "pure_water";
@@ -24,6 +31,7 @@ pub const MARK: &str = "pure_water";
 /// The whole water.
 pub fn water(raw: &Raw) -> Result<Water> {
     raw.only(&[
+        SCHEMA_KEY,
         "name",
         "description",
         "refractive_index",
@@ -32,6 +40,7 @@ pub fn water(raw: &Raw) -> Result<Water> {
         "constituents",
         "seabed",
     ])?;
+    schema_key(raw)?;
     let refractive_index = spectrum(&raw.need("refractive_index")?, INDEX)?;
     let bed = raw.need("seabed")?;
     bed.only(&["albedo"])?;
@@ -51,7 +60,7 @@ pub fn water(raw: &Raw) -> Result<Water> {
         name: name(raw)?,
         description: raw.need("description")?.text()?.to_string(),
         refractive_index,
-        largest_depth: depth.number_that("over 0 and at most 11000 m", |v| v > 0.0 && v <= 11_000.0)?,
+        largest_depth: depth.number_in(LARGEST_DEPTH_M)?,
         substances,
         seabed_albedo,
         warnings,
@@ -77,8 +86,7 @@ fn substance(raw: &Raw, called: Option<&str>, warnings: &mut Vec<String>) -> Res
             name.text()?.to_string()
         }
     };
-    let concentration =
-        raw.get("concentration")?.map_or(Ok(1.0), |c| c.number_that("0 or more", |v| v >= 0.0))?;
+    let concentration = raw.get("concentration")?.map_or(Ok(1.0), |c| c.number_in(NOT_NEGATIVE))?;
     let (scattering, absorption) = (raw.get("scattering")?, raw.get("absorption")?);
     if scattering.is_none() && absorption.is_none() {
         return Err(raw.refuse("one of `scattering`, `absorption` is missing"));
@@ -103,12 +111,16 @@ fn substance(raw: &Raw, called: Option<&str>, warnings: &mut Vec<String>) -> Res
     Ok(WaterSubstance { name, scattering, absorption, phase })
 }
 
-const KINDS: [&str; 6] = ["constant", "table", "power_law", "spectrum", "exponential", "chlorophyll"];
+/// Kinds of coefficients: three of air's, three of water's own.
+pub const LAWS: [&str; 6] = ["constant", "table", "power_law", "spectrum", "exponential", "chlorophyll"];
+/// Kinds of phase functions that air has not.
+pub const FOURNIER_FORAND: &str = "fournier_forand";
+pub const MOLECULAR: &str = "molecular";
 
 fn law(raw: &Raw, factor: f64, scatters: bool) -> Result<WaterLaw> {
     let plain = |coefficient| WaterLaw::Plain { coefficient, factor };
     let table = |spectrum_per_m| plain(Coefficient::Table { spectrum_per_m });
-    match raw.need("kind")?.choice(&KINDS)? {
+    match raw.need("kind")?.choice(&LAWS)? {
         // A column is no property of water: 0 makes the reader of air's coefficients refuse one.
         0..=2 => Ok(plain(coefficient(raw, 0.0)?)),
         3 => {
@@ -119,9 +131,9 @@ fn law(raw: &Raw, factor: f64, scatters: bool) -> Result<WaterLaw> {
             raw.only(&["kind", "per_m", "at_nm", "slope_per_nm"])?;
             let slope = raw.need("slope_per_nm")?;
             Ok(WaterLaw::Exponential {
-                per_m: factor * raw.need("per_m")?.number_that("0 or more", |v| v >= 0.0)?,
-                at_nm: raw.need("at_nm")?.positive()?,
-                slope_per_nm: slope.number_that("between -0.1 and 0.1", |v| v.abs() <= 0.1)?,
+                per_m: factor * raw.need("per_m")?.number_in(NOT_NEGATIVE)?,
+                at_nm: raw.need("at_nm")?.number_in(POSITIVE)?,
+                slope_per_nm: slope.number_in(SLOPE_PER_NM)?,
             })
         }
         _ if scatters => {
@@ -145,7 +157,7 @@ fn law(raw: &Raw, factor: f64, scatters: bool) -> Result<WaterLaw> {
 
 fn chlorophyll(raw: &Raw) -> Result<f64> {
     let raw = raw.need("chlorophyll_mg_per_m3")?;
-    raw.number_that("over 0 and at most 1000 mg/m3", |v| v > 0.0 && v <= 1000.0)
+    raw.number_in(CHLOROPHYLL)
 }
 
 /// Morel & Maritorena 2001, Eqs. 12 to 14: 0.416 Chl^0.766 at 550 nm, and λ^v with v = (log₁₀ Chl − 0.3)/2 up to
@@ -163,17 +175,15 @@ fn plankton_scattering(chlorophyll: f64) -> Coefficient {
 fn water_phase(raw: &Raw) -> Result<PhaseLaw> {
     let kind = raw.need("kind")?;
     match kind.text()? {
-        "fournier_forand" => {
+        FOURNIER_FORAND => {
             raw.only(&["kind", "backscatter_fraction"])?;
-            let (low, high) = BACKSCATTER;
             let fraction = raw.need("backscatter_fraction")?;
-            let what = format!("between {low} and {high}");
-            Ok(fournier_forand(fraction.number_that(&what, |v| (low..=high).contains(&v))?))
+            Ok(fournier_forand(fraction.number_in(BACKSCATTER_FRACTION)?))
         }
-        "molecular" => {
+        MOLECULAR => {
             raw.only(&["kind", "depolarisation"])?;
             let depolarisation = raw.need("depolarisation")?;
-            let d = depolarisation.number_that("between 0 and 0.5", |v| (0.0..=0.5).contains(&v))?;
+            let d = depolarisation.number_in(DEPOLARISATION)?;
             let king_factor = KingFactor::Table {
                 // The King factor of a depolarisation ratio (Bates 1984).
                 spectrum: Spectrum::constant((6.0 + 3.0 * d) / (6.0 - 7.0 * d)),

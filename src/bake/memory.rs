@@ -1,0 +1,100 @@
+//! How much memory a bake will take, from its sizes, before it starts.
+//!
+//! The large things are counted: states and rays while the solver works, fields and texels while tables are
+//! filled. It is meant to be a little too much rather than too little.
+
+use super::compact::groups;
+use super::settings::{Layout, Settings};
+use crate::medium::Medium;
+use crate::preset::Planet;
+use crate::transport::solve::Resolution;
+
+/// What every bake takes, bytes: picture, report, look-up of colours.
+const BASE: f64 = 20e6;
+/// Bytes for each texel of a table over four axes (or of a water) from when it is filled to when it is a file.
+const TEXEL: f64 = 56.0;
+/// Bytes for each texel and wavelength of spectral files: gas and aerosol, as halves and encoded.
+const SPECTRAL: f64 = 14.0;
+/// Bytes of a number of the solver: single precision for the sixteen wavelengths of a batch.
+const LANES: f64 = 64.0;
+const BATCH: usize = 16;
+/// Directions of its search that the solver keeps at most, two states each, and states at work beside them.
+const MOST_KEPT: f64 = 16.0;
+const AT_WORK: f64 = 7.0;
+
+/// Estimate of the most memory that a bake takes, bytes. Errors of it, measured: see `tests/cli/many.rs`.
+pub fn estimate(planet: &Planet, settings: &Settings) -> u64 {
+    let medium = planet.medium(&settings.wavelengths_nm);
+    let wants = |layout| settings.layouts.contains(&layout);
+    let (compact, paper) = (wants(Layout::Compact), wants(Layout::Elek2010));
+    let solve = |resolution, wanted| if wanted { Solve::of(&medium, resolution) } else { Solve::default() };
+    let full = solve(&Resolution::TABLES, compact);
+    let similar = solve(&Resolution::PAPER, paper || !compact);
+    let texels = texels(&medium, settings);
+    let solving = full.working.max(similar.working);
+    let filling = full.fields.max(similar.fields) + TEXEL * texels.air + SPECTRAL * texels.spectral;
+    (BASE + full.solution + similar.solution + solving.max(filling + TEXEL * texels.water)) as u64
+}
+
+/// Memory of one medium's light, bytes.
+#[derive(Default)]
+struct Solve {
+    /// While it is solved.
+    working: f64,
+    /// Afterwards, for as long as the bake lasts.
+    solution: f64,
+    /// While tables are filled from it.
+    fields: f64,
+}
+
+impl Solve {
+    fn of(medium: &Medium, resolution: &Resolution) -> Self {
+        let levels = resolution.levels_in(medium);
+        let (state_levels, field_levels) = (levels.coarse as f64, (levels.coarse * levels.refinement) as f64);
+        let terms = ((resolution.degree + 1) * (resolution.degree + 2) / 2) as f64;
+        let at_suns = resolution.sun_nodes as f64 * terms * LANES;
+        let shells = field_levels * levels.cuts as f64;
+        let batches = medium.wavelengths_nm.len().div_ceil(BATCH) as f64;
+        let depth = medium.vertical_optical_depth().into_iter().fold(0.0, f64::max);
+        // Thin air needs three directions, one of an optical depth of ten all that are kept.
+        let kept = (3.0 + 4.0 * depth.sqrt()).min(MOST_KEPT);
+        let rays = state_levels * 2.3 * resolution.zeniths as f64;
+        let constituents = medium.constituents.len() as f64;
+        let path = shells * (8.0 * constituents + 40.0);
+        let sunlight = shells * resolution.sunlight_nodes as f64;
+        Solve {
+            working: state_levels * at_suns * (2.0 * kept + AT_WORK)
+                + field_levels * at_suns
+                + rays * field_levels * 1.3 * (LANES + 32.0),
+            solution: batches * (state_levels * at_suns + sunlight * LANES)
+                + rays * path
+                + sunlight * 8.0 * constituents,
+            fields: field_levels * at_suns * groups(medium).len() as f64,
+        }
+    }
+}
+
+/// Numbers of texels, and of texels times wavelengths.
+struct Texels {
+    air: f64,
+    spectral: f64,
+    water: f64,
+}
+
+fn texels(medium: &Medium, settings: &Settings) -> Texels {
+    let of = |size: &[usize]| size.iter().map(|&n| n as f64).product::<f64>();
+    let wants = |layout| settings.layouts.contains(&layout);
+    let mut air = 0.0;
+    if wants(Layout::Compact) {
+        let sizes = settings.compact_sizes;
+        air += of(&sizes.multiple) + of(&sizes.single) * groups(medium).len() as f64;
+    }
+    if wants(Layout::Elek2010) {
+        air += of(&settings.elek2010_size);
+    }
+    let wavelengths = medium.wavelengths_nm.len() as f64;
+    let spectral = if settings.spectral { of(&settings.elek2010_size) * wavelengths } else { 0.0 };
+    let waters = &settings.waters;
+    let each = of(&waters.size) * if waters.underwater { 3.0 } else { 1.0 };
+    Texels { air, spectral, water: each * waters.list.len() as f64 }
+}

@@ -1,0 +1,177 @@
+//! What came of the bakes of a run: lines, one table, or JSON.
+
+use super::super::memory;
+use super::super::text::print;
+use super::progress::Stage;
+use crate::error::{Error, Result};
+use serde_json::{Map, Value, json};
+use std::path::PathBuf;
+
+/// A finished bake.
+pub struct Done {
+    pub folder: PathBuf,
+    pub files: usize,
+    pub bytes: usize,
+    pub warnings: Vec<String>,
+    pub quality: Map<String, Value>,
+    pub stages: Vec<Stage>,
+}
+
+/// What came of one preset.
+pub struct Outcome {
+    /// Name of the planet, or what was asked for where there is no planet.
+    pub name: String,
+    pub result: Result<Done>,
+}
+
+/// The largest error that a bake found in its own tables, and where.
+#[derive(Debug, PartialEq)]
+pub struct Worst {
+    pub error: f64,
+    pub layout: String,
+    pub region: String,
+}
+
+impl Done {
+    /// Largest error of the tables of all layouts against direct integration of their own medium.
+    pub fn worst(&self) -> Option<Worst> {
+        let mut worst: Option<Worst> = None;
+        let mut look = |layout: &str, region: &str, found: &Value| {
+            if let Some(error) = found["max"].as_f64()
+                && worst.as_ref().is_none_or(|w| error > w.error)
+            {
+                worst = Some(Worst { error, layout: layout.into(), region: region.into() });
+            }
+        };
+        let regions = |key: &str| self.quality.get(key).and_then(Value::as_object).into_iter().flatten();
+        regions("compact_against_direct_integration")
+            .for_each(|(region, found)| look("compact", region, &found["per_wavelength"]));
+        regions("elek2010_against_its_own_medium")
+            .for_each(|(region, found)| look("elek2010", region, found));
+        regions("water").for_each(|(water, found)| look("water", water, &found["tables_against_solver"]));
+        worst
+    }
+
+    /// Error of the energy balance of the medium as it is, or else of the paper's; none where orders were counted.
+    pub fn balance(&self) -> Option<f64> {
+        let of = |key: &str| self.quality.get(key).and_then(|s| s["energy_balance_error"].as_f64());
+        of("solver").or_else(|| of("paper_medium_solver"))
+    }
+
+    fn json(&self) -> Value {
+        let seconds = |d: &std::time::Duration| (d.as_secs_f64() * 1e4).round() / 1e4;
+        let stage = |(n, w, c): &Stage| json!({ "stage": n, "wall_s": seconds(w), "cpu_s": seconds(c) });
+        let worst = |w: Worst| json!({ "error": w.error, "layout": w.layout, "region": w.region });
+        json!({
+            "folder": self.folder.to_string_lossy(),
+            "files": self.files,
+            "bytes": self.bytes,
+            "worst_table_error": self.worst().map(worst),
+            "energy_balance_error": self.balance(),
+            "warnings": self.warnings,
+            "quality": self.quality,
+            "perf": self.stages.iter().map(stage).collect::<Vec<_>>(),
+        })
+    }
+}
+
+impl Outcome {
+    /// One object on one line.
+    fn json(&self) -> Value {
+        match &self.result {
+            Ok(done) => {
+                let Value::Object(more) = done.json() else { unreachable!("an object was made") };
+                let first = [("preset", json!(self.name)), ("outcome", json!("baked"))];
+                first.map(|(k, v)| (k.to_string(), v)).into_iter().chain(more).collect()
+            }
+            Err(error) => json!({ "preset": self.name, "outcome": "failed", "error": error.to_string(),
+                "exit_code": error.exit_code() }),
+        }
+    }
+}
+
+/// Prints what came of all presets, in their order: a line of JSON each, or else the lines of one bake or the table
+/// of several, with the times of their stages if wanted.
+pub fn tell(outcomes: &[Outcome], as_json: bool, perf: bool) -> Result<()> {
+    if as_json {
+        return print(&outcomes.iter().map(|o| format!("{}\n", o.json())).collect::<String>());
+    }
+    let mut out = String::new();
+    if perf {
+        let bakes = outcomes.iter().filter_map(|o| o.result.as_ref().ok());
+        bakes.for_each(|done| out.push_str(&format!("{}{}", headline(done), times(&done.stages))));
+        if let Some(peak) = memory::peak() {
+            out.push_str(&format!("  peak memory {:.0} MB\n", peak as f64 / 1e6));
+        }
+    }
+    match outcomes {
+        [Outcome { result: Ok(done), .. }] if !perf => out.push_str(&headline(done)),
+        [_] => {}
+        several => out.push_str(&table(several)),
+    }
+    print(&out)
+}
+
+fn headline(done: &Done) -> String {
+    format!("{}: {} files, {:.1} MB\n", done.folder.display(), done.files, done.bytes as f64 / 1e6)
+}
+
+fn times(stages: &[Stage]) -> String {
+    let line = |(name, wall, cpu): &Stage| {
+        let (wall, cpu) = (wall.as_secs_f64(), cpu.as_secs_f64());
+        format!("  {name:<22} {wall:7.3} s wall {cpu:7.3} s CPU\n")
+    };
+    stages.iter().map(line).collect()
+}
+
+fn table(outcomes: &[Outcome]) -> String {
+    let width = outcomes.iter().map(|o| o.name.chars().count()).max().unwrap_or(0).max("preset".len());
+    let mut out = format!(
+        "{:width$}  {:>5}  {:>6}  {:>8}  {:>9}  {:>8}  outcome\n",
+        "preset", "files", "MB", "worst", "balance", "warnings"
+    );
+    for o in outcomes {
+        let line = match &o.result {
+            Ok(done) => row(done),
+            Err(e) => format!("{:>5}  {:>6}  {:>8}  {:>9}  {:>8}  failed: {e}", "-", "-", "-", "-", "-"),
+        };
+        out.push_str(&format!("{:width$}  {line}\n", o.name));
+    }
+    out.push_str("worst: largest error of a table against direct integration; balance: energy lost or won\n");
+    out
+}
+
+fn row(done: &Done) -> String {
+    let worst = done.worst();
+    let error = worst.as_ref().map_or("-".into(), |w| percent(w.error));
+    let place =
+        worst.map_or(String::new(), |w| format!(" (worst: {}, {})", w.layout, w.region.replace('_', " ")));
+    let balance = done.balance().map_or("-".into(), |b| format!("{:+.3} %", 100.0 * b));
+    let megabytes = done.bytes as f64 / 1e6;
+    let warnings = done.warnings.len();
+    let folder = done.folder.display();
+    format!("{:>5}  {megabytes:>6.1}  {error:>8}  {balance:>9}  {warnings:>8}  {folder}{place}", done.files)
+}
+
+/// A share in per cent; what is beyond all use as such.
+fn percent(share: f64) -> String {
+    match 100.0 * share {
+        p if p >= 1e4 => "> 9999 %".into(),
+        p => format!("{p:.1} %"),
+    }
+}
+
+/// The failure of a run: its own where one preset was asked for, else how many failed, with the highest exit code
+/// among them.
+pub fn failure(outcomes: Vec<Outcome>) -> Result<()> {
+    let of = outcomes.len();
+    let mut errors: Vec<Error> = outcomes.into_iter().filter_map(|o| o.result.err()).collect();
+    match (errors.len(), of) {
+        (0, _) => Ok(()),
+        (1, 1) => Err(errors.remove(0)),
+        (failed, _) => {
+            let code = errors.iter().map(Error::exit_code).max().unwrap_or(3);
+            Err(Error::Several { failed, of, code })
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Memory: how much the machine has left, and amounts as people write them.
+
+use std::path::Path;
+
+/// Bytes that can still be had without swapping: of the machine, or of the container where that is less. None
+/// where the system does not say.
+pub fn available() -> Option<u64> {
+    let machine = read("/proc/meminfo").and_then(|text| of_meminfo(&text));
+    let groups = [
+        ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"),
+        ("/sys/fs/cgroup/memory/memory.limit_in_bytes", "/sys/fs/cgroup/memory/memory.usage_in_bytes"),
+    ];
+    let left = |(most, used): &(&str, &str)| of_group(&read(most)?, &read(used)?);
+    machine.into_iter().chain(groups.iter().filter_map(left)).min()
+}
+
+fn read(path: impl AsRef<Path>) -> Option<String> {
+    std::fs::read_to_string(path).ok()
+}
+
+/// The kernel's own estimate, in kilobytes.
+fn of_meminfo(text: &str) -> Option<u64> {
+    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
+}
+
+/// What a control group has left; none where its limit is "max".
+fn of_group(most: &str, used: &str) -> Option<u64> {
+    Some(most.trim().parse::<u64>().ok()?.saturating_sub(used.trim().parse().ok()?))
+}
+
+const UNITS: [(&str, f64); 8] = [
+    ("B", 1.0),
+    ("kB", 1e3),
+    ("MB", 1e6),
+    ("GB", 1e9),
+    ("KiB", 1024.0),
+    ("MiB", 1_048_576.0),
+    ("GiB", 1_073_741_824.0),
+    ("TiB", 1_099_511_627_776.0),
+];
+
+/// An amount of memory as a text: a number and a unit (`2GiB`, `500 MB`), without a unit bytes.
+pub fn parse(text: &str) -> Result<u64, String> {
+    let end = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
+    let (number, unit) = (text[..end].trim(), text[end..].trim());
+    let factor = UNITS.iter().find(|u| u.0.eq_ignore_ascii_case(unit)).map(|u| u.1);
+    match (number.parse::<f64>(), factor.or(unit.is_empty().then_some(1.0))) {
+        (Ok(n), Some(factor)) if n > 0.0 && n * factor <= 1e18 => Ok((n * factor) as u64),
+        _ => Err("expected an amount of memory, e.g. 2GiB or 500MB".into()),
+    }
+}
+
+/// An amount for people.
+pub fn shown(bytes: u64) -> String {
+    match bytes as f64 {
+        b if b >= 1e9 => format!("{:.1} GB", b / 1e9),
+        b => format!("{:.0} MB", b / 1e6),
+    }
+}
+
+/// Largest resident size of this process so far, bytes.
+pub fn peak() -> Option<u64> {
+    let status = read("/proc/self/status")?;
+    let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
+    let kilobytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kilobytes * 1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Binary and decimal units, with and without a space; nothing else.
+    #[test]
+    fn amounts_are_read() {
+        assert_eq!(parse("2GiB"), Ok(2 << 30));
+        assert_eq!(parse("1.5 GB"), Ok(1_500_000_000));
+        assert_eq!(parse("750mb"), Ok(750_000_000));
+        assert_eq!(parse("4096"), Ok(4096));
+        for bad in ["", "GiB", "-1GB", "0", "2 lakes", "NaN", "inf", "1e30GB", "2GiB2"] {
+            assert!(parse(bad).is_err(), "{bad}");
+        }
+    }
+
+    /// The lines of Linux as they are written; a group without a limit leaves the machine's number alone.
+    #[test]
+    fn what_linux_says() {
+        let text = "MemTotal:       24684020 kB\nMemFree:  1 kB\nMemAvailable:   23473568 kB\n";
+        assert_eq!(of_meminfo(text), Some(23_473_568 * 1024));
+        assert_eq!(of_meminfo("MemTotal: 3 kB\n"), None);
+        assert_eq!(of_group("1000\n", "400\n"), Some(600));
+        assert_eq!(of_group("1000", "1400"), Some(0));
+        assert_eq!(of_group("max\n", "400\n"), None);
+    }
+}
