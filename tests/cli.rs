@@ -7,6 +7,7 @@ mod cli {
     mod damaged;
     mod disk;
     mod help;
+    mod many;
     mod media;
     mod options;
     mod places;

@@ -75,3 +75,91 @@ fn slips_are_named() {
         assert!(talk.contains(meant), "{arguments:?}: {talk}");
     }
 }
+
+/// The colour of the zenith is that of the solver at its finest, with light of all orders, within a few thousandths
+/// in x and y and 2 % in luminance; without air there is no light and no colour.
+#[test]
+fn show_tells_the_colour_of_the_zenith() {
+    use tyndall::points::Point;
+    use tyndall::spectrum::{chromaticity, grid, hat_weights, weighted};
+    use tyndall::transport::solve::{Orders, Resolution, Solution};
+    use tyndall::transport::view::View;
+    let report: serde_json::Value =
+        serde_json::from_str(&stdout(&tyndall(&["show", "earth-paper", "--json"]))).unwrap();
+    let planet = tyndall::preset::load("earth-paper", &[]).unwrap();
+    let medium = planet.medium(&grid(9));
+    let solution = Solution::new(&medium, &Resolution::EXACT, Orders::Converged { tolerance: 1e-3 });
+    for (entry, elevation) in
+        report["physics"]["zenith"]["colours"].as_array().unwrap().iter().zip([60.0, 5.0])
+    {
+        assert_eq!(entry["sun_elevation_deg"], elevation);
+        let mu_s = libm::sin(f64::to_radians(elevation));
+        let up = Point { altitude: 0.0, mu: 1.0, mu_s, azimuth_deg: 0.0 };
+        let view = View::enter(&up, medium.ground_radius, medium.top_radius).unwrap();
+        let light = solution.radiance(&view, &[0, 1]).scattering;
+        let xyz = weighted(&hat_weights(&medium.wavelengths_nm, &planet.star.irradiance), &light);
+        let found = |key: &str, k: usize| entry[key][k].as_f64().unwrap();
+        for (k, expected) in chromaticity(xyz).into_iter().enumerate() {
+            assert!((found("xy", k) - expected).abs() < 0.003, "{elevation}: {entry} {expected}");
+        }
+        assert!((found("xyz", 1) / xyz[1] - 1.0).abs() < 0.02, "{elevation}: {entry} {xyz:?}");
+        // Blue: its largest component is 1, encoded ff.
+        assert!(entry["linear_srgb"][2] == 1.0 && entry["srgb"].as_str().unwrap().ends_with("ff"), "{entry}");
+    }
+    let vacuum = tyndall(&["show", "earth-paper", "--set", "constituents=[]"]);
+    assert_eq!(stdout(&vacuum).matches("#000000").count(), 2, "{}", stdout(&vacuum));
+    assert!(!stdout(&tyndall(&["show", "earth-paper", "--no-colour"])).contains("zenith"));
+}
+
+/// Deep water that absorbs red is blue; the number is the reflectance that is told at single wavelengths, seen by
+/// the eye, so that it lies between their smallest and largest times π.
+#[test]
+fn show_tells_the_colour_of_deep_water() {
+    let ask = ["show", "clear-ocean", "--json", "--wavelengths", "400,450,500,550,600,650,700"];
+    let report: serde_json::Value = serde_json::from_str(&stdout(&tyndall(&ask))).unwrap();
+    let physics = &report["physics"];
+    let single = physics["remote_sensing_reflectance_per_sr"].as_array().unwrap();
+    let single: Vec<f64> = single.iter().map(|v| std::f64::consts::PI * v.as_f64().unwrap()).collect();
+    let found = physics["deep_water"]["reflectance"].as_f64().unwrap();
+    let [least, most] = [f64::min, f64::max].map(|f| single.iter().copied().reduce(f).unwrap());
+    assert!(least < found && found < most, "{least} {found} {most}");
+    assert_eq!(physics["deep_water"]["linear_srgb"][2], 1.0);
+    assert!(physics["deep_water"]["xy"][0].as_f64().unwrap() < 0.2, "{}", physics["deep_water"]);
+}
+
+/// `check` says of which preset it speaks also where a spectrum beside it is missing, and takes the key by which an
+/// editor finds the schema.
+#[test]
+fn check_names_the_preset() {
+    let folder = tempfile::tempdir().unwrap();
+    let good = include_str!("../presets/planets/earth-paper.json");
+    let lost = good.replace("\"albedo\": 0.45", "\"albedo\": \"lost.csv\"");
+    assert_ne!(lost, good);
+    std::fs::write(folder.path().join("a.json"), lost).unwrap();
+    std::fs::write(
+        folder.path().join("b.json"),
+        good.replacen('{', "{ \"$schema\": \"planet.schema.json\",", 1),
+    )
+    .unwrap();
+    std::fs::write(folder.path().join("c.json"), good.replacen('{', "{ \"$schema\": 7,", 1)).unwrap();
+    let text = stdout(&tyndall(&["check", folder.path().to_str().unwrap()]));
+    let lines: Vec<&str> = text.lines().collect();
+    assert!(lines[0].contains("a.json: ") && lines[0].contains("lost.csv: No such file"), "{text}");
+    assert!(lines[1].starts_with("ok ") && lines[2].contains("$schema = 7: must be a text"), "{text}");
+}
+
+/// The schema is one of the draft that it names, and differs by what is asked for.
+#[test]
+fn schema_is_printed() {
+    let one = |kind: &[&str]| -> serde_json::Value {
+        serde_json::from_str(&stdout(&tyndall(&[&["schema"], kind].concat()))).unwrap()
+    };
+    let (planet, water, either) = (one(&["planet"]), one(&["water"]), one(&[]));
+    for schema in [&planet, &water, &either] {
+        assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
+    }
+    assert!(planet["$defs"].get("water").is_none() && water["$defs"].get("planet").is_none());
+    assert!(either["$defs"].get("planet").is_some() && either["$defs"].get("water").is_some());
+    let radius = &planet["$defs"]["planet"]["properties"]["ground"]["properties"]["radius_km"];
+    assert_eq!((&radius["exclusiveMinimum"], &radius["type"]), (&0.0.into(), &"number".into()));
+}

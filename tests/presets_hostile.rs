@@ -2,7 +2,7 @@
 //! planet that can be computed with. Nothing panics and nothing infinite gets past the border.
 
 use serde_json::{Value, json};
-use tyndall::preset::{self, Planet};
+use tyndall::preset::{self, Planet, Water};
 
 /// Every place in a value; of lists longer than `longest` the ends and a middle, since tables of optics have
 /// hundreds of numbers alike.
@@ -19,6 +19,20 @@ fn pointers(value: &Value, at: String, longest: usize, out: &mut Vec<String>) {
     out.push(at);
 }
 
+/// Whether a water can be computed with, and comes back from its resolved form.
+fn sound_water(water: &Water) -> bool {
+    let medium = water.medium(&tyndall::spectrum::grid(9));
+    let finite = |v: &f64| v.is_finite() && *v >= 0.0;
+    let phases = medium.scatterers.iter().flat_map(|s| &s.phase).map(|p| p.value(0.3));
+    water.largest_depth > 0.0
+        && medium.absorption.iter().all(finite)
+        && medium.scatterers.iter().all(|s| s.scattering.iter().all(finite))
+        && medium.seabed_albedo.iter().all(finite)
+        && medium.refractive_index.iter().all(|n| *n >= 1.0)
+        && phases.into_iter().all(|v| v.is_finite() && v >= 0.0)
+        && Water::from_resolved(&water.resolved()).is_ok_and(|w| w == *water)
+}
+
 fn sound(planet: &Planet) -> bool {
     let medium = planet.medium(&tyndall::spectrum::grid(9));
     let depths = medium.vertical_optical_depth();
@@ -33,9 +47,9 @@ fn sound(planet: &Planet) -> bool {
         && Planet::from_resolved(&planet.resolved()).is_ok_and(|p| p == *planet)
 }
 
-#[test]
-fn no_value_gets_past_the_border_unchecked() {
-    let nasty = [
+/// Values that most places cannot take.
+fn nasty() -> [Value; 17] {
+    [
         json!(0),
         json!(-1),
         json!(-0.0),
@@ -53,34 +67,59 @@ fn no_value_gets_past_the_border_unchecked() {
         json!([[1], [2]]),
         json!({}),
         json!({"kind": "tabulated"}),
-    ];
+    ]
+}
+
+/// Puts every nasty value to every place of a preset. `read` says whether what it got is sound. Returns how many
+/// were refused and accepted.
+fn spoil(text: &str, longest: usize, read: impl Fn(&str) -> tyndall::Result<bool>) -> [usize; 2] {
+    let value: Value = serde_json::from_str(text).unwrap();
+    let mut places = Vec::new();
+    pointers(&value, String::new(), longest, &mut places);
     let (mut refused, mut accepted) = (0, 0);
-    for (name, _) in preset::shipped() {
-        let text = std::fs::read_to_string(format!("presets/planets/{name}.json")).unwrap();
-        let value: Value = serde_json::from_str(&text).unwrap();
-        let mut places = Vec::new();
-        // Earth's presets are tried whole.
-        let longest = if ["earth", "earth-paper"].contains(&name) { usize::MAX } else { 6 };
-        pointers(&value, String::new(), longest, &mut places);
-        for place in &places {
-            for bad in &nasty {
-                let mut changed = value.clone();
-                *changed.pointer_mut(place).unwrap() = bad.clone();
-                match preset::read("p.json", &changed.to_string(), &[]) {
-                    Ok(planet) => {
-                        accepted += 1;
-                        assert!(sound(&planet), "{name}{place} = {bad}");
-                    }
-                    Err(error) => {
-                        refused += 1;
-                        let line = error.to_string();
-                        assert_eq!(error.exit_code(), 2, "{name}{place} = {bad}: {line}");
-                        assert!(!line.contains('\n') && line.len() > 10, "{name}{place} = {bad}: {line}");
-                    }
+    for place in &places {
+        for bad in nasty() {
+            let mut changed = value.clone();
+            *changed.pointer_mut(place).unwrap() = bad.clone();
+            match read(&changed.to_string()) {
+                Ok(sound) => {
+                    accepted += 1;
+                    assert!(sound, "{place} = {bad}");
+                }
+                Err(error) => {
+                    refused += 1;
+                    let line = error.to_string();
+                    assert_eq!(error.exit_code(), 2, "{place} = {bad}: {line}");
+                    assert!(!line.contains('\n') && line.len() > 10, "{place} = {bad}: {line}");
                 }
             }
         }
     }
+    [refused, accepted]
+}
+
+#[test]
+fn no_value_gets_past_the_border_unchecked() {
+    let mut sums = [0, 0];
+    for (name, _) in preset::shipped() {
+        let text = std::fs::read_to_string(format!("presets/planets/{name}.json")).unwrap();
+        // Earth's presets are tried whole.
+        let longest = if ["earth", "earth-paper"].contains(&name) { usize::MAX } else { 6 };
+        let counts = spoil(&text, longest, |t| preset::read("p.json", t, &[]).map(|p| sound(&p)));
+        sums = [sums[0] + counts[0], sums[1] + counts[1]];
+    }
     // Both happen: 1 is a fair density, an empty list of constituents a vacuum.
-    assert!(refused > 500 && accepted > 50, "{refused} {accepted}");
+    assert!(sums[0] > 500 && sums[1] > 50, "{sums:?}");
+}
+
+/// The same for waters of every kind of law.
+#[test]
+fn no_value_gets_into_water_unchecked() {
+    let mut sums = [0, 0];
+    for name in ["phytoplankton", "sandy", "jerlov-1c"] {
+        let text = std::fs::read_to_string(format!("presets/waters/{name}.json")).unwrap();
+        let counts = spoil(&text, 6, |t| preset::read_water("w.json", t, &[]).map(|w| sound_water(&w)));
+        sums = [sums[0] + counts[0], sums[1] + counts[1]];
+    }
+    assert!(sums[0] > 500 && sums[1] > 50, "{sums:?}");
 }

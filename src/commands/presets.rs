@@ -147,7 +147,10 @@ fn check(paths: &[PathBuf]) -> Result<()> {
             }
             Err(error) => {
                 bad += 1;
-                print(&format!("bad  {error}\n"))?;
+                // An error about a spectrum names that file.
+                let error = error.to_string();
+                let about = if error.contains(name.as_str()) { String::new() } else { format!("{name}: ") };
+                print(&format!("bad  {about}{error}\n"))?;
             }
         }
     }

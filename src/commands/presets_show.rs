@@ -20,6 +20,7 @@ pub fn as_json(planet: &Planet, wavelengths: &[f64]) -> String {
         json!({
             "name": c.name,
             "column_m": c.density.column(0.0, height),
+            "scale_height_m": scale_height(&c.density, height),
             "optical_depth_scattering": scattering,
             "optical_depth_absorption": absorption,
             "mean_cosine": c.phase.iter().map(|p| p.mean_cosine()).collect::<Vec<_>>(),
@@ -90,16 +91,33 @@ fn total(medium: &Medium) -> String {
 
 fn profile(profile: &DensityProfile, height: f64) -> String {
     let km = |v: &f64| v / 1e3;
-    let column = profile.column(0.0, height) / 1e3;
+    let scale_height = scale_height(profile, height) / 1e3;
     match profile {
         DensityProfile::Exponential { scale_height } => format!("scale height {} km", km(scale_height)),
         DensityProfile::Tent { bottom, centre, top } => {
             format!("tent {}–{}–{} km", km(bottom), km(centre), km(top))
         }
         DensityProfile::Layer { bottom, top } => format!("layer {}–{} km", km(bottom), km(top)),
-        DensityProfile::Linear { nodes } => format!("table of {}, column {column:.4} km", nodes.len()),
-        DensityProfile::LogLinear { nodes } => format!("log table of {}, column {column:.4} km", nodes.len()),
+        DensityProfile::Linear { nodes } => {
+            format!("table of {}, scale height {scale_height:.4} km", nodes.len())
+        }
+        DensityProfile::LogLinear { nodes } => {
+            format!("log table of {}, scale height {scale_height:.4} km", nodes.len())
+        }
     }
+}
+
+/// Scale height of an exponential profile, m; of others their column over their largest density, which is the same
+/// thing where the top is far above.
+fn scale_height(profile: &DensityProfile, height: f64) -> f64 {
+    let largest = match profile {
+        DensityProfile::Exponential { scale_height } => return *scale_height,
+        DensityProfile::Tent { .. } | DensityProfile::Layer { .. } => 1.0,
+        DensityProfile::Linear { nodes } | DensityProfile::LogLinear { nodes } => {
+            nodes.iter().map(|n| n.1).fold(0.0, f64::max)
+        }
+    };
+    if largest > 0.0 { profile.column(0.0, height) / largest } else { 0.0 }
 }
 
 fn sums(a: &[f64], b: &[f64]) -> impl Iterator<Item = String> {

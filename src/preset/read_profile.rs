@@ -1,7 +1,7 @@
 //! `profile` of a constituent → [`DensityProfile`].
 
 use super::bounds::{Bounds, NOT_NEGATIVE, POSITIVE};
-use super::raw::Raw;
+use super::raw::{MOST_METRES, Raw};
 use crate::error::Result;
 use crate::medium::DensityProfile;
 
@@ -48,6 +48,9 @@ fn nodes(raw: &Raw, bounds: Bounds) -> Result<Vec<(f64, f64)>> {
     let (z, d) = (altitudes.rising(2)?, densities.numbers_in(bounds)?);
     if z[0] < 0.0 {
         return Err(altitudes.refuse("altitudes must be 0 or more"));
+    }
+    if z[z.len() - 1] * [1e3, 1.0][unit] > MOST_METRES {
+        return Err(altitudes.refuse("altitudes must be less than 1e13 m"));
     }
     if z.len() != d.len() {
         return Err(densities.refuse(format!("{} densities for {} altitudes", d.len(), z.len())));

@@ -5,7 +5,7 @@ use clap::Args;
 use std::fs;
 use tyndall::commands;
 
-const COMMANDS: [&str; 9] = [
+const COMMANDS: [&str; 10] = [
     "bake",
     "sample",
     "reference",
@@ -15,6 +15,7 @@ const COMMANDS: [&str; 9] = [
     "presets list",
     "presets show",
     "presets check",
+    "presets schema",
 ];
 
 /// The command lines with which a help opens.

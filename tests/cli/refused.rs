@@ -71,6 +71,10 @@ fn arguments() {
         refused(&format!("bake earth {line}"), reasons);
     }
     refused("bake", &["<PRESET>"]);
+    refused("bake --all earth", &["--all", "cannot be used with"]);
+    for amount in ["2lakes", "-1GB", "0"] {
+        refused(&format!("bake earth --memory={amount}"), &[amount, "amount of memory"]);
+    }
     refused("bkae earth", &["bkae"]);
     refused("verify no-such-folder", &["no-such-folder: no such bake"]);
     refused("sample no-such-folder --points x.csv", &["no-such-folder: no such bake"]);

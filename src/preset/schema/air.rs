@@ -1,6 +1,7 @@
 //! The schema of a constituent of air, and of its density profile.
 
-use super::super::bounds::{NOT_NEGATIVE, POSITIVE};
+use super::super::bounds::{Bounds, NOT_NEGATIVE, POSITIVE};
+use super::super::raw::MOST_METRES;
 use super::super::read_constituent::ROLES;
 use super::super::read_profile::KINDS;
 use super::super::read_spectrum::SHARE;
@@ -47,10 +48,13 @@ fn profile() -> Value {
     let [exponential, tent, layer, linear, log_linear] = KINDS;
     let altitude = |object: Object, stem: &str| object.length(stem, NOT_NEGATIVE, "Altitude over the ground");
     let nodes = |kind: &str, bounds, about: &str| {
-        let altitudes = |unit: &str| numbers(NOT_NEGATIVE, 2, &format!("Altitudes in {unit}, rising"));
+        let altitudes = |unit: &str, factor: f64| {
+            let bounds = Bounds::within(0.0, MOST_METRES / factor, "0 or more");
+            numbers(bounds, 2, &format!("Altitudes in {unit}, rising"))
+        };
         Object::new(about)
             .kind(kind)
-            .one_of(&[("altitudes_km", altitudes("km")), ("altitudes_m", altitudes("m"))])
+            .one_of(&[("altitudes_km", altitudes("km", 1e3)), ("altitudes_m", altitudes("m", 1.0))])
             .must("densities", numbers(bounds, 2, "Relative densities"))
             .build()
     };

@@ -1,6 +1,6 @@
 //! The schema of coefficients over wavelength.
 
-use super::super::bounds::{Bounds, NOT_NEGATIVE, POSITIVE};
+use super::super::bounds::{NOT_NEGATIVE, POSITIVE};
 use super::super::read_coefficient::{AMOUNTS, CO2_PPM, EXPONENT, KINDS, UNITS};
 use super::super::read_spectrum::{CROSS_SECTION, KING_FACTOR, REFRACTIVE_INDEX};
 use super::parts::*;
@@ -55,19 +55,23 @@ fn density() -> Value {
 }
 
 fn of_index(kind: &str) -> Value {
-    let known_at = Bounds { text: "greater than 0 (unless given, the number density itself)", ..POSITIVE };
-    let [wanted, index] =
-        [("number_density_per_m3", POSITIVE), ("reference_number_density_per_m3", known_at)];
+    const HERE: &str = "number_density_per_m3";
+    const KNOWN: &str = "reference_number_density_per_m3";
+    // Without a reference the density here is the one that the index belongs to, and cannot be 0.
+    let either = json!({ "anyOf": [
+        { "required": [KNOWN] },
+        { "properties": { (HERE): { "exclusiveMinimum": 0 } } },
+    ] });
     Object::new("Scattering by molecules, from their refractive index (Elek & Kmoch 2010, Eqs. 1–2)")
         .kind(kind)
         .must("refractive_index", spectrum(REFRACTIVE_INDEX, "Refractive index of the gas"))
         .may("king_factor", spectrum(KING_FACTOR, "King factor (1 unless given)"))
-        .must(wanted.0, density())
-        .may(index.0, number(index.1, "Number density that the index belongs to, 1/m³"))
-        .rule(json!({ "anyOf": [
-            { "required": [index.0] },
-            { "properties": { (wanted.0): { "exclusiveMinimum": 0 } } },
-        ] }))
+        .must(HERE, density())
+        .may(
+            KNOWN,
+            number(POSITIVE, "Number density that the index belongs to, 1/m³ (that above unless given)"),
+        )
+        .rule(either)
         .build()
 }
 
