@@ -35,7 +35,8 @@ fn objects(value: &Value, place: &str, visit: &mut dyn FnMut(&str, &Map<String, 
     }
 }
 
-/// A citation names a year, or it is a choice of this project with its reason; "see above" is neither.
+/// A citation names a year (or a data sheet that is kept up to date), or it is a choice of this project with its
+/// reason; "see above" is neither.
 fn cites(source: &str) -> bool {
     let reason = source.split_once("project choice: ").is_some_and(|(_, why)| why.len() > 5);
     let year = |word: &str| {
@@ -43,7 +44,7 @@ fn cites(source: &str) -> bool {
         digits.len() == 4 && (digits.starts_with("19") || digits.starts_with("20"))
     };
     let words = source.split(|c: char| c.is_whitespace() || ",;:()/-".contains(c));
-    reason || words.into_iter().any(year)
+    reason || source.contains("Fact Sheet") || words.into_iter().any(year)
 }
 
 /// Each object with numbers has a source that is one; without it the reader refuses the file and says so.

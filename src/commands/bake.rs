@@ -156,19 +156,20 @@ fn bake_all(
         }
         Some(result)
     });
-    let outcome =
-        |((planet, answer), asked): ((Result<Planet>, Option<Option<Result<Done>>>), &String)| match (
-            planet,
-            answer.flatten(),
-        ) {
-            (Err(error), _) => Outcome { name: asked.clone(), result: Err(error) },
-            (Ok(planet), Some(result)) => Outcome { name: planet.name, result },
-            (Ok(planet), None) => {
-                let bug = std::io::Error::other("the bake panicked, which is a bug of this program");
-                Outcome { result: Err(Error::machine(args.out.join(&planet.name), bug)), name: planet.name }
-            }
-        };
-    planets.into_iter().zip(answers).zip(asked).map(outcome).collect()
+    let answers = answers.into_iter().map(Option::flatten);
+    planets.into_iter().zip(answers).zip(asked).map(|((p, a), asked)| outcome(args, asked, p, a)).collect()
+}
+
+/// Puts together what is known of one preset; no `answer` to a good planet means that its bake panicked.
+fn outcome(args: &Args, asked: &str, planet: Result<Planet>, answer: Option<Result<Done>>) -> Outcome {
+    match (planet, answer) {
+        (Err(error), _) => Outcome { name: asked.to_string(), result: Err(error) },
+        (Ok(planet), Some(result)) => Outcome { name: planet.name, result },
+        (Ok(planet), None) => {
+            let bug = std::io::Error::other("the bake panicked, which is a bug of this program");
+            Outcome { result: Err(Error::machine(args.out.join(&planet.name), bug)), name: planet.name }
+        }
+    }
 }
 
 /// Half of what is free now, so that what else runs here has room; 2 GiB where the system does not say.
