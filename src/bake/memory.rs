@@ -21,7 +21,7 @@ const BATCH: usize = 16;
 /// Directions of its search that the solver keeps at most, two states each, and states at work beside them.
 const MOST_KEPT: f64 = 16.0;
 const AT_WORK: f64 = 7.0;
-/// For what is not counted. With it, the estimate was 1.0 to 1.35 times what 11 bakes took: shipped planets thin and
+/// For what is not counted. With it, the estimate was 0.95 to 1.35 times what 11 bakes took: shipped planets thin and
 /// thick, more wavelengths, larger tables, spectral files, waters.
 const MARGIN: f64 = 1.1;
 
