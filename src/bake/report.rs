@@ -84,7 +84,7 @@ fn rgb_of(palette: &Palette, xyz: [f64; 3]) -> [f64; 3] {
     multiply(&palette.space.from_xyz(), xyz.map(|v| v / palette.star_xyz[1]))
 }
 
-/// What the solver says of one medium: orders, residual, energy balance.
+/// What the solver says of one medium: orders, residual, energy balance, and the spherical albedo per wavelength.
 pub fn solver(medium: &Medium, solution: &Solution) -> Value {
     let residual = worst(&solution.report.residual);
     let mut out = Map::new();
@@ -92,9 +92,12 @@ pub fn solver(medium: &Medium, solution: &Solution) -> Value {
         Orders::Converged { .. } => {
             out.insert("orders".into(), json!("converged"));
             out.insert("applications".into(), json!(solution.report.applications));
-            let errors = balance(solution, medium).iter().map(|b| b.error()).collect::<Vec<_>>();
-            let worst = errors.iter().copied().fold(0.0, |a: f64, e| if e.abs() > a.abs() { e } else { a });
+            let balances = balance(solution, medium);
+            let errors = balances.iter().map(|b| b.error());
+            let worst = errors.fold(0.0, |a: f64, e| if e.abs() > a.abs() { e } else { a });
             out.insert("energy_balance_error".into(), json!(digits(worst)));
+            let albedo: Vec<f64> = balances.iter().map(|b| digits(b.spherical_albedo())).collect();
+            out.insert("spherical_albedo".into(), json!(albedo));
         }
         Orders::First(n) => {
             out.insert("orders".into(), json!(n));

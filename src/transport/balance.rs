@@ -23,6 +23,13 @@ impl Balance {
     pub fn error(&self) -> f64 {
         self.passed + self.scattered_out + self.absorbed_by_air + self.absorbed_by_ground - 1.0
     }
+
+    /// Spherical (Bond) albedo of the planet at this wavelength: what it sends back of the light that meets its
+    /// ground or air; 0 where nothing does.
+    pub fn spherical_albedo(&self) -> f64 {
+        let met = 1.0 - self.passed;
+        if met > 0.0 { self.scattered_out / met } else { 0.0 }
+    }
 }
 
 const SUNS: usize = 24;

@@ -28,6 +28,18 @@ fn conservative_air_over_white_ground_loses_nothing() {
     let gas = constituent(Role::Gas, RAYLEIGH, exponential(9e3), &[5e-5, 1.5e-5], &[0.0; 2]);
     for b in balanced(&planet(3_000e3, 70e3, 1.0, vec![gas]), "white ground", EASY) {
         assert_eq!((b.absorbed_by_air, b.absorbed_by_ground), (0.0, 0.0));
+        assert!((b.spherical_albedo() - 1.0).abs() < EASY, "{b:?}");
+    }
+}
+
+/// Without air a sphere that scatters evenly sends back its albedo's share of all that it meets, and a disc of
+/// its radius meets (ground / top)² of the beam.
+#[test]
+fn bare_ground_sends_back_its_albedo() {
+    for b in balanced(&planet(3_000e3, 70e3, 0.3, vec![]), "bare ground", EASY) {
+        assert!((b.spherical_albedo() - 0.3).abs() < 0.3 * EASY, "{b:?}");
+        let disc = (3_000.0f64 / 3_070.0).powi(2);
+        assert!((1.0 - b.passed - disc).abs() < EASY, "{b:?}");
     }
 }
 
