@@ -42,9 +42,9 @@ pub struct Args {
     /// Tables for observers under water too
     #[arg(long)]
     underwater: bool,
-    /// Orders of scattering in the water: auto (all), or 1 (the paper's shortcut)
-    #[arg(long, default_value = "auto", value_parser = ["auto", "1"])]
-    water_orders: String,
+    /// Orders of scattering of sunlight in the water: auto (all), or a number; 1 is the paper's shortcut
+    #[arg(long, default_value = "auto", value_name = "auto|N", value_parser = super::machine::water_orders)]
+    water_orders: WaterOrders,
     /// Orders of scattering to sum: auto (until converged) or a number
     #[arg(long, default_value = "auto", value_parser = |t: &str| orders(t, TOLERANCE))]
     orders: Orders,
@@ -188,13 +188,12 @@ fn waters(args: &Args) -> Result<Waters> {
             )));
         }
     }
-    let single = args.water_orders == "1";
-    if list.is_empty() && (single || args.underwater) {
-        let option = if single { "--water-orders" } else { "--underwater" };
+    let counted = args.water_orders != WaterOrders::All;
+    if list.is_empty() && (counted || args.underwater) {
+        let option = if counted { "--water-orders" } else { "--underwater" };
         return Err(Error::Argument(format!("{option} needs --waters")));
     }
-    let orders = if single { WaterOrders::Single } else { WaterOrders::All };
-    Ok(Waters { list, underwater: args.underwater, orders, ..Waters::default() })
+    Ok(Waters { list, underwater: args.underwater, orders: args.water_orders, ..Waters::default() })
 }
 
 /// Tables of the water layout that belong to no water.

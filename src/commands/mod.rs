@@ -8,6 +8,7 @@ pub mod presets;
 mod presets_show;
 mod presets_water;
 pub mod reference;
+mod reference_water;
 pub mod sample;
 mod sample_water;
 mod text;

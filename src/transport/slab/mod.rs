@@ -7,7 +7,7 @@
 //! form ([`Field`]). Streams are Gauss–Legendre nodes apart inside and outside Snell's window, where the
 //! reflectance of the surface's underside has its edge. Forward peaks are scaled away (delta-M, Wiscombe 1977)
 //! and light scattered once gets its exact phase function back (Nakajima & Tanaka 1988). Any optical depth; no
-//! light is lost to the number of orders. The bed is black: Lambertian beds follow from [`seabed_radiance`].
+//! light is lost to the number of orders, unless a number is asked for (`orders`). The bed is black: Lambertian beds follow from [`seabed_radiance`].
 //!
 //! Cosines are positive: `up` is light on its way up, towards the surface. Radiance in the water is per unit
 //! irradiance on a plane normal to the beam in the water, just below the surface; [`Surface`] carries light
@@ -18,15 +18,17 @@ mod fresnel;
 mod leaving;
 mod matrix;
 mod modes;
+mod orders;
 mod streams;
 mod surface;
 
+pub use super::quadrature::gauss_legendre;
 pub use field::{Beam, Field, Layer, Pair, View, seabed_radiance};
 pub use fresnel::{fresnel, lazanyi_szirmay_kalos, refract};
-pub use leaving::{Angles, Light, WaterOrders, leaving};
+pub use leaving::{Angles, Light, WaterOrders, azimuth_half_spread, leaving, within};
 pub use modes::Slab;
 pub use streams::phase_mean;
-pub use surface::Surface;
+pub use surface::{Dome, Surface};
 
 /// How a slab is resolved.
 #[derive(Clone, Copy, Debug, PartialEq)]

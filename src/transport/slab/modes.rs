@@ -128,6 +128,19 @@ impl Slab {
         m
     }
 
+    /// Scattered light per scaled optical depth from moments, upwards and downwards along every stream.
+    pub(super) fn sources(&self, moments: &[f64]) -> Vec<[f64; 2]> {
+        let along = |p: &Vec<f64>| {
+            let (mut even, mut odd) = (0.0, 0.0);
+            for (l, m) in moments.iter().enumerate() {
+                let part = self.kernel[l] * p[l] * m;
+                if l % 2 == 0 { even += part } else { odd += part }
+            }
+            [even + odd, even - odd]
+        };
+        self.polynomials.iter().map(along).collect()
+    }
+
     /// Scattered light per scaled optical depth from moments, into the direction of given polynomials.
     pub(super) fn scattered(&self, polynomials: &[f64], moments: &[f64]) -> f64 {
         self.kernel.iter().zip(polynomials).zip(moments).map(|((k, p), m)| k * p * m).sum()
