@@ -2,7 +2,7 @@
 
 use crate::medium::Medium;
 use crate::points::Point;
-use crate::transport::slab::{Dome, gauss_legendre};
+use crate::transport::slab::{Dome, fresnel, gauss_legendre};
 use crate::transport::solve::{Solution, lowest_sun};
 use crate::transport::view::View;
 use rayon::prelude::*;
@@ -14,6 +14,9 @@ pub struct Skylight {
     /// per wavelength.
     rings: Vec<(f64, Vec<f64>)>,
 }
+
+/// Refractive index by which the sky is split for all waters of a bake: of seawater.
+const TYPICAL: f64 = 1.34;
 
 /// Rings and azimuths of a half turn for tables, and where the whole sky is taken for the truth.
 pub const COARSE: [usize; 2] = [8, 8];
@@ -54,11 +57,19 @@ impl Skylight {
     /// Share of the high part of [`Dome::split`] in the light, per wavelength; that of an even sky where it is dark.
     fn high(&self) -> Vec<f64> {
         let count = self.rings.first().map_or(0, |r| r.1.len());
+        let through = |mu: f64| 1.0 - fresnel(mu, TYPICAL);
+        // The same rings for the parts, so that an even sky is split into what it is made of.
+        let parts = Dome::PARTS.map(|dome| {
+            let one = |(mu, weight): (f64, f64)| 2.0 * PI * mu * weight * dome.radiance(mu);
+            let rings = gauss_legendre(self.rings.len());
+            let sum: f64 = rings.iter().map(|&ring| one(ring)).sum();
+            rings.into_iter().map(|ring| one(ring) * through(ring.0)).sum::<f64>() / sum
+        });
         (0..count)
             .map(|w| {
                 let sum: f64 = self.rings.iter().map(|r| r.1[w]).sum();
-                let second: f64 = self.rings.iter().map(|r| r.0 * r.1[w]).sum();
-                if sum > 0.0 { Dome::split(sum, second)[0] / sum } else { Dome::EVEN[0] }
+                let passed: f64 = self.rings.iter().map(|r| through(r.0) * r.1[w]).sum();
+                if sum > 0.0 { Dome::split(sum, passed, parts)[0] / sum } else { Dome::EVEN[0] }
             })
             .collect()
     }

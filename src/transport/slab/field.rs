@@ -3,7 +3,6 @@
 use super::matrix::{Factors, Matrix};
 use super::modes::Slab;
 use super::orders::{Later, Sweeps};
-use super::streams::legendre_polynomials;
 use super::surface::Dome;
 use std::f64::consts::PI;
 use std::sync::OnceLock;
@@ -65,8 +64,7 @@ impl View {
 
 impl Slab {
     pub fn view(&self, mu: f64) -> View {
-        let degree = self.kernel.len() - 1;
-        let polynomials = [legendre_polynomials(mu, degree), legendre_polynomials(-mu, degree)];
+        let polynomials = [self.polynomials_at(mu), self.polynomials_at(-mu)];
         let modes = [0, 1]
             .map(|side: usize| self.moments.iter().map(|m| self.scattered(&polynomials[side], m)).collect());
         View { mu, polynomials, modes }

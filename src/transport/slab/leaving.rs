@@ -163,29 +163,3 @@ fn seen(
     let radiance = seabed_radiance(medium.seabed_albedo[w], lit[1], layer.bed_irradiance(&bed));
     [lit[0], radiance * look(&bed, view, [0.0; 2])]
 }
-
-/// Half the range over azimuth of the sun's light that leaves along `mu` after one scattering: what a table without
-/// azimuth drops, to the order in which it is largest.
-pub fn azimuth_half_spread(
-    medium: &WaterMedium,
-    w: usize,
-    layer: &Layer,
-    mu: f64,
-    mu_s: f64,
-    direct: f64,
-) -> f64 {
-    let surface = layer.slab.surface;
-    let (view, sun) = (surface.cosine_in_water(mu), surface.cosine_in_water(mu_s.max(0.0)));
-    let mean = phase_mean(|nu| medium.phase(w, nu), view, -sun);
-    if mean <= 0.0 {
-        return 0.0;
-    }
-    let [once, _] = leaving(medium, w, layer, mu, Light::sun(mu_s, direct), WaterOrders::First(1));
-    let sines = ((1.0 - view * view) * (1.0 - sun * sun)).max(0.0).sqrt();
-    let values = (0..=18).map(|k| {
-        let azimuth = std::f64::consts::PI * f64::from(k) / 18.0;
-        medium.phase(w, -view * sun + sines * libm::cos(azimuth))
-    });
-    let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(v), b.max(v)));
-    once * 0.5 * (high - low) / mean
-}

@@ -1,6 +1,7 @@
 //! Radiative transfer in water: a homogeneous plane-parallel slab between a flat refracting surface and a bed.
 //!
-//! Only the azimuth mean is solved (Fourier mode 0), which is what a table without azimuth holds. At one
+//! The azimuth mean is solved (Fourier mode 0), which is what a table without azimuth holds; higher modes only to
+//! tell what that leaves out (`azimuth`). At one
 //! wavelength the light along N streams a hemisphere is a sum of 2N exponentials of depth ([`Slab`], found once
 //! from an eigenvalue problem after Nakajima & Tanaka 1986, JQSRT 35, 13); the boundary conditions of one depth
 //! fix their amplitudes ([`Layer`]); the light along any direction follows from integrating its source in closed
@@ -13,6 +14,7 @@
 //! irradiance on a plane normal to the beam in the water, just below the surface; [`Surface`] carries light
 //! through.
 
+mod azimuth;
 mod field;
 mod fresnel;
 mod leaving;
@@ -23,9 +25,10 @@ mod streams;
 mod surface;
 
 pub use super::quadrature::gauss_legendre;
+pub use azimuth::{Azimuths, azimuth_half_spread, leaving_at};
 pub use field::{Beam, Field, Layer, Pair, View, seabed_radiance};
 pub use fresnel::{fresnel, lazanyi_szirmay_kalos, refract};
-pub use leaving::{Angles, Light, WaterOrders, azimuth_half_spread, leaving, within};
+pub use leaving::{Angles, Light, WaterOrders, leaving, within};
 pub use modes::Slab;
 pub use streams::phase_mean;
 pub use surface::{Dome, Surface};

@@ -1,20 +1,22 @@
 //! Light scattered a given number of times, order by order: what closed forms for all orders leave out.
 //!
 //! At nodes of scaled optical depth the light of one order along all streams gives its moments, these give the
-//! source of the next, and that is integrated along every stream. Everything is held times e^t: what is left of a
-//! source that far down then changes slowly, and is taken to be linear between nodes.
+//! source of the next, and that is integrated along every stream. Everything is held times e^{ct}: what is left of
+//! a source that far down then changes slowly, and is taken to be linear between nodes. The first orders fade as e^−t
+//! and their sum as the slowest mode does; c lies between the two.
 
 use super::field::{against, along};
 use super::modes::Slab;
 use super::{Beam, View};
 use std::f64::consts::PI;
 
-/// Steps between nodes: this much, and this share of the way to the nearer end. Halved, no sum of orders changes
-/// by more than 0.1 %.
-const STEP: (f64, f64) = (0.02, 0.06);
+/// Steps between nodes: this much, and this share of the way to the nearer end. Sums of 60 orders in water of an
+/// albedo of 0.9 are then within 0.5 % of the closed form.
+const STEP: (f64, f64) = (0.02, 0.04);
 
 /// Nodes of depth and how light fares between them, for one layer.
 pub struct Sweeps {
+    c: f64,
     t: Vec<f64>,
     /// `[cell][stream]`: what is left of the light upwards, and the weights of the source at the cell's upper and
     /// lower end; the same downwards.
@@ -23,14 +25,15 @@ pub struct Sweeps {
 
 /// Moments and irradiances of the light of the orders 1 … n − 1 of a sunbeam.
 pub struct Later {
+    c: f64,
     t: Vec<f64>,
-    /// `[node][degree]`, times e^t.
+    /// `[node][degree]`, times e^{ct}.
     moments: Vec<f64>,
-    /// `[node]`: of the plane there, from below and from above, times e^t.
+    /// `[node]`: of the plane there, from below and from above, times e^{ct}.
     flux: Vec<[f64; 2]>,
 }
 
-/// One order's light along the streams, `[node][stream]`, times e^t.
+/// One order's light along the streams, `[node][stream]`, times e^{ct}.
 struct Order {
     up: Vec<f64>,
     down: Vec<f64>,
@@ -38,12 +41,12 @@ struct Order {
 
 impl Sweeps {
     pub fn new(slab: &Slab, depth: f64) -> Sweeps {
-        let t = nodes(depth);
+        let (t, c) = (nodes(depth), 0.5 * (1.0 + slab.slowest().min(1.0)));
         let mut cells = Vec::with_capacity((t.len() - 1) * slab.nodes.len());
         for pair in t.windows(2) {
             let h = pair[1] - pair[0];
             for &(mu, _) in &slab.nodes {
-                let (up, down) = (1.0 / mu + 1.0, 1.0 / mu - 1.0);
+                let (up, down) = (1.0 / mu + c, 1.0 / mu - c);
                 let [(a0, a1), (b0, b1)] = [weights(up, h), weights(down, h)];
                 cells.push([
                     libm::exp(-up * h),
@@ -56,13 +59,14 @@ impl Sweeps {
                 ]);
             }
         }
-        Sweeps { t, cells }
+        Sweeps { c, t, cells }
     }
 
     /// The orders below `n` of a beam over a black bed.
     pub fn orders_below(&self, slab: &Slab, beam: &Beam, n: usize) -> Later {
         let (streams, degrees) = (slab.nodes.len(), slab.kernel.len());
         let mut later = Later {
+            c: self.c,
             t: self.t.clone(),
             moments: vec![0.0; self.t.len() * degrees],
             flux: vec![[0.0; 2]; self.t.len()],
@@ -87,7 +91,7 @@ impl Sweeps {
     /// Light scattered once, in closed form.
     fn first(&self, slab: &Slab, beam: &Beam) -> Order {
         let (a, streams, depth) = (1.0 / beam.mu, slab.nodes.len(), self.t[self.t.len() - 1]);
-        let polynomials = super::streams::legendre_polynomials(-beam.mu, slab.kernel.len() - 1);
+        let polynomials = slab.polynomials_at(-beam.mu);
         let moments: Vec<f64> = polynomials.iter().map(|p| p / (2.0 * PI)).collect();
         let sources = slab.sources(&moments);
         let mut order = Order::none(self.t.len() * streams);
@@ -96,9 +100,9 @@ impl Sweeps {
             let mirrored = slab.reflects[i] * up * against(a, mu, depth);
             for (j, &t) in self.t.iter().enumerate() {
                 let at = j * streams + i;
-                order.up[at] = up * libm::exp(-(a - 1.0) * t) * against(a, mu, depth - t);
-                order.down[at] = down * along(a - 1.0, 1.0 / mu - 1.0, t) / mu
-                    + mirrored * libm::exp(-(1.0 / mu - 1.0) * t);
+                order.up[at] = up * libm::exp(-(a - self.c) * t) * against(a, mu, depth - t);
+                order.down[at] = down * along(a - self.c, 1.0 / mu - self.c, t) / mu
+                    + mirrored * libm::exp(-(1.0 / mu - self.c) * t);
             }
         }
         order
@@ -144,8 +148,8 @@ impl Later {
         let steep = 1.0 / view.mu;
         let mut sum = 0.0;
         self.pieces(slab, view, 0, t, f64::INFINITY, |from, to, q| {
-            let (near, far) = weights(steep + 1.0, to - from);
-            sum += libm::exp(-from - (from - t) * steep) * steep * (q[0] * near + q[1] * far);
+            let (near, far) = weights(steep + self.c, to - from);
+            sum += libm::exp(-self.c * from - (from - t) * steep) * steep * (q[0] * near + q[1] * far);
         });
         sum
     }
@@ -155,8 +159,8 @@ impl Later {
         let steep = 1.0 / view.mu;
         let mut sum = 0.0;
         self.pieces(slab, view, 1, 0.0, t, |from, to, q| {
-            let (near, far) = weights(steep - 1.0, to - from);
-            sum += libm::exp(-to - (t - to) * steep) * steep * (q[1] * near + q[0] * far);
+            let (near, far) = weights(steep - self.c, to - from);
+            sum += libm::exp(-self.c * to - (t - to) * steep) * steep * (q[1] * near + q[0] * far);
         });
         sum
     }
@@ -165,7 +169,9 @@ impl Later {
     pub fn irradiance(&self, t: f64) -> [f64; 2] {
         let k = self.t.partition_point(|&node| node <= t).clamp(1, self.t.len() - 1);
         let x = ((t - self.t[k - 1]) / (self.t[k] - self.t[k - 1])).clamp(0.0, 1.0);
-        [0, 1].map(|side| libm::exp(-t) * (self.flux[k - 1][side] * (1.0 - x) + self.flux[k][side] * x))
+        [0, 1].map(|side| {
+            libm::exp(-self.c * t) * (self.flux[k - 1][side] * (1.0 - x) + self.flux[k][side] * x)
+        })
     }
 
     /// Every piece between nodes from `low` to `high`, with the source at its ends.

@@ -29,10 +29,11 @@ impl Dome {
         }
     }
 
-    /// Irradiances of both parts that have the irradiance ∫ L mu dω and the ∫ L mu² dω of a sky's radiance L;
-    /// none below 0, where the sum is kept.
-    pub fn split(irradiance: f64, second: f64) -> [f64; 2] {
-        let high = (4.0 * second - 2.0 * irradiance).clamp(0.0, irradiance.max(0.0));
+    /// Irradiances of both parts that together have the irradiance of a sky and of which as much gets through a
+    /// surface, `passed`; `parts` is what does of each. None is below 0, where the sum is kept.
+    pub fn split(irradiance: f64, passed: f64, parts: [f64; 2]) -> [f64; 2] {
+        let high = (passed - irradiance * parts[1]) / (parts[0] - parts[1]);
+        let high = high.clamp(0.0, irradiance.max(0.0));
         [high, irradiance.max(0.0) - high]
     }
 }
@@ -118,12 +119,12 @@ mod tests {
     /// no mixture fits, all of the light is in one part.
     #[test]
     fn skies_are_split() {
-        // ∫ L mu² dω of the parts: 3/4 and 1/2.
+        let parts = [0.96, 0.88];
         for mixed in [[0.3, 0.5], Dome::EVEN, [1.0, 0.0]] {
-            let split = Dome::split(mixed[0] + mixed[1], 0.75 * mixed[0] + 0.5 * mixed[1]);
+            let split = Dome::split(mixed[0] + mixed[1], parts[0] * mixed[0] + parts[1] * mixed[1], parts);
             assert!((split[0] - mixed[0]).abs() < 1e-12 && (split[1] - mixed[1]).abs() < 1e-12, "{split:?}");
         }
-        assert_eq!(Dome::split(2.0, 1.9), [2.0, 0.0]);
-        assert_eq!(Dome::split(2.0, 0.2), [0.0, 2.0]);
+        assert_eq!(Dome::split(2.0, 1.95, parts), [2.0, 0.0]);
+        assert_eq!(Dome::split(2.0, 0.2, parts), [0.0, 2.0]);
     }
 }
