@@ -76,7 +76,7 @@ fn light_over_azimuth() {
         for (found, azimuth) in found.iter().zip(degrees) {
             let look = Look { mu: view, azimuth: Some(azimuth) };
             let (mean, noise) = tracer.leaving(look, Source::Sun(sun), 60_000, 7).water;
-            assert!(noise < 0.01 * mean, "too noisy: {mean} ± {noise}");
+            assert!(noise < 0.02 * mean, "too noisy: {mean} ± {noise}");
             let off = (found - mean).abs();
             assert!(off < 0.005 * mean + 3.5 * noise, "azimuth {azimuth}: {found} is not {mean} ± {noise}");
         }

@@ -153,7 +153,7 @@ pub(super) fn plain(formula: &crate::table::AxisFormula) -> crate::export::manif
 }
 
 /// The parts of a sky, as an axis lists them.
-pub(super) const PARTS: &str = "0: of a radiance in proportion to mu; 1: in proportion to 1 - mu";
+pub(super) const PARTS: &str = "0: of a radiance in proportion to mu; 1: in proportion to (1 - mu)^2";
 
 /// `whole`: the table with a sun and a view axis; `risen`: what water's own light is divided by.
 fn column(layer: &Layer, angles: &Angles, whole: bool, risen: f64) -> Column {

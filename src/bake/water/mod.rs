@@ -3,7 +3,7 @@
 //! Tables hold what the water does to light and leave out what the surface and the air do, so that they are
 //! smooth and that an engine may tilt the surface: radiance just below it over n², per unit of what enters. With
 //! F Fresnel's reflectance, E_sun the irradiance of the surface by the sun and E_i those by two parts of the sky, one
-//! as bright as the cosine of the zenith angle and one as what that lacks of 1, A the albedo of the bed,
+//! as bright as the cosine of the zenith angle and one as the square of what that lacks of 1, A the albedo of the bed,
 //!   L = (1 − F(mu)) [ (1 − e^{−κD}) ((1 − F(mu_s)) E_sun W(D, mu, mu_s) + Σ E_i S_i(D, mu))
 //!                     + U(D, mu) A B / (π − A r(D)) ]
 //!   B = (1 − F(mu_s)) E_sun W_b(D, mu_s) + Σ E_i B_i(D)

@@ -9,8 +9,8 @@ use crate::quality::{Distribution, digits, relative_errors};
 use crate::sky::Component;
 use crate::sky::water::{WaterSky, WaterView};
 use crate::transport::slab::{
-    Azimuths, Dome, Layer, Light, Surface, WaterOrders, azimuth_half_spread, fresnel, lazanyi_szirmay_kalos,
-    leaving,
+    Azimuths, Layer, Light, Surface, WaterOrders, azimuth_half_spread, fresnel, gauss_legendre,
+    lazanyi_szirmay_kalos, leaving,
 };
 use crate::transport::solve::Solution;
 use rayon::prelude::*;
@@ -25,10 +25,10 @@ const SUNS: [f64; 5] = [0.06, 0.19, 0.43, 0.71, 0.968];
 struct Sun {
     mu_s: f64,
     direct: Vec<f64>,
-    sky: Vec<f64>,
-    /// The sky in two parts, as tables have it, and whole.
+    /// The sky in two parts, as tables have it; whole; and taken for evenly bright.
     parts: Vec<[f64; 2]>,
     beams: Vec<Vec<(f64, f64)>>,
+    even: Vec<Vec<(f64, f64)>>,
 }
 
 impl Sun {
@@ -37,12 +37,14 @@ impl Sun {
             (solution.sun_transmittance(medium.ground_radius, mu_s), solution.ground_irradiance(mu_s));
         let whole = Skylight::new(medium, solution, mu_s, FINE);
         let four = &palette.four;
+        let even =
+            |e: f64| gauss_legendre(FINE[0]).into_iter().map(|(mu, w)| (mu, 2.0 * mu * w * e)).collect();
         Sun {
             mu_s,
             direct: four.iter().map(|&w| direct[w] * mu_s).collect(),
-            sky: four.iter().map(|&w| sky[w]).collect(),
             parts: four.iter().map(|&w| tables.split.parts(mu_s, w, sky[w])).collect(),
             beams: four.iter().map(|&w| whole.beams(w, sky[w])).collect(),
+            even: four.iter().map(|&w| even(sky[w])).collect(),
         }
     }
 }
@@ -79,7 +81,7 @@ pub fn report(
                 };
                 let each = 0..slabs.len();
                 let parts = |w: usize| Light { sky: sun.parts[w], ..Light::sun(sun.mu_s, sun.direct[w]) };
-                let even = |w: usize| Light { sky: Dome::EVEN.map(|e| e * sun.sky[w]), ..parts(w) };
+                let even = |w: usize| Light { sky: [0.0; 2], beams: &sun.even[w], ..parts(w) };
                 let whole = |w: usize| Light { sky: [0.0; 2], beams: &sun.beams[w], ..parts(w) };
                 let truth = all(WaterOrders::All, each.clone().map(parts).collect());
                 let found = sky.leaving(&WaterView { depth, mu, mu_s: sun.mu_s }, Component::Total);

@@ -53,7 +53,7 @@ fn light(medium: &Medium, solution: &Solution, palette: &Palette, split: &Split)
         })
         .collect();
     let rows = "0: by the sun itself; 1: by the part of the sky whose radiance is in proportion to mu, the cosine of \
-                the zenith angle; 2: by the part in proportion to 1 - mu (the sky has the planet's own ground below, \
+                the zenith angle; 2: by the part in proportion to (1 - mu)^2 (the sky has the planet's own ground below, \
                 not water)";
     baked(
         LAYOUT,

@@ -54,11 +54,11 @@ impl Skylight {
         self.rings.iter().map(|(mu, light)| (*mu, light[w] * scale)).collect()
     }
 
-    /// Share of the high part of [`Dome::split`] in the light, per wavelength; that of an even sky where it is dark.
+    /// Share of the high part of [`Dome::split`] in the light, per wavelength; half where it is dark.
     fn high(&self) -> Vec<f64> {
         let count = self.rings.first().map_or(0, |r| r.1.len());
         let through = |mu: f64| 1.0 - fresnel(mu, TYPICAL);
-        // The same rings for the parts, so that an even sky is split into what it is made of.
+        // The same rings for the parts as for the sky, so that a mixture of them is split into what it is made of.
         let parts = Dome::PARTS.map(|dome| {
             let one = |(mu, weight): (f64, f64)| 2.0 * PI * mu * weight * dome.radiance(mu);
             let rings = gauss_legendre(self.rings.len());
@@ -69,7 +69,7 @@ impl Skylight {
             .map(|w| {
                 let sum: f64 = self.rings.iter().map(|r| r.1[w]).sum();
                 let passed: f64 = self.rings.iter().map(|r| through(r.0) * r.1[w]).sum();
-                if sum > 0.0 { Dome::split(sum, passed, parts)[0] / sum } else { Dome::EVEN[0] }
+                if sum > 0.0 { Dome::split(sum, passed, parts)[0] / sum } else { 0.5 }
             })
             .collect()
     }

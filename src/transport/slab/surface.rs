@@ -10,22 +10,21 @@ pub enum Dome {
     Even,
     /// In proportion to mu: 3 mu / 2π.
     High,
-    /// In proportion to 1 − mu: 3 (1 − mu) / π.
+    /// In proportion to (1 − mu)²: 6 (1 − mu)² / π.
     Low,
 }
 
 impl Dome {
-    /// The two parts that skies are made of here.
+    /// The two parts that skies are made of here: no mixture of them lets less light into water than any sky of
+    /// Earth's air does, which 1 − mu for the second would.
     pub const PARTS: [Dome; 2] = [Dome::High, Dome::Low];
-    /// What an even sky has of each.
-    pub const EVEN: [f64; 2] = [2.0 / 3.0, 1.0 / 3.0];
 
     /// Radiance, 1/sr.
     pub fn radiance(self, mu: f64) -> f64 {
         match self {
             Dome::Even => 1.0 / PI,
             Dome::High => 1.5 * mu / PI,
-            Dome::Low => 3.0 * (1.0 - mu) / PI,
+            Dome::Low => 6.0 * (1.0 - mu) * (1.0 - mu) / PI,
         }
     }
 
@@ -115,12 +114,12 @@ mod tests {
         assert!((Surface { n: 1.0 }.sun_in_water(0.3) - 1.0).abs() < 1e-14);
     }
 
-    /// A sky that is a mixture of both parts is split into what it was mixed from; an even one among them. Where
+    /// A sky that is a mixture of both parts is split into what it was mixed from. Where
     /// no mixture fits, all of the light is in one part.
     #[test]
     fn skies_are_split() {
         let parts = [0.96, 0.88];
-        for mixed in [[0.3, 0.5], Dome::EVEN, [1.0, 0.0]] {
+        for mixed in [[0.3, 0.5], [0.6, 0.1], [1.0, 0.0]] {
             let split = Dome::split(mixed[0] + mixed[1], parts[0] * mixed[0] + parts[1] * mixed[1], parts);
             assert!((split[0] - mixed[0]).abs() < 1e-12 && (split[1] - mixed[1]).abs() < 1e-12, "{split:?}");
         }
