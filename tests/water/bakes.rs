@@ -79,7 +79,9 @@ fn tables_answer_what_the_solver_says() {
             let truth = if exact { sample(&bake, &[&ask[..], &["--exact"]].concat()) } else { found.clone() };
             assert_eq!(found.len(), truth.len());
             for (k, (f, t)) in found.iter().zip(&truth).enumerate() {
-                let limit = 0.02 * t + 1e-9;
+                // Answers take the whole sky, tables two parts of it: most apart under a sun at the horizon.
+                let low = VIEWS[k / (found.len() / VIEWS.len())].2 < 0.1;
+                let limit = if low { 0.04 } else { 0.02 } * t + 1e-9;
                 assert!((f - t).abs() < limit, "{depth} m {component} value {k}: {f} is not {t}");
             }
             parts.push(found);
