@@ -262,4 +262,13 @@ mod tests {
             other => panic!("{other:?}"),
         }
     }
+
+    /// A peak 1e-9 wide on an even ground, a third of all: the peak has every moment 1, the ground none but the first.
+    #[test]
+    fn moments_of_a_narrow_peak() {
+        let chi = tabulated_legendre(&[(-1.0, 0.5), (1.0 - 1e-9, 0.5), (1.0, 1e9)], 24);
+        for c in &chi[1..] {
+            assert!((c - 1.0 / 3.0).abs() < 1e-6, "{chi:?}");
+        }
+    }
 }
