@@ -95,7 +95,7 @@ fn bad_waters_are_refused_in_one_line() {
 fn light(water: &Water, depth: f64, mu_s: f64) -> [f64; 2] {
     let medium = water.medium(&[500.0]);
     let slab = Slab::new(&medium, 0, Surface { n: medium.refractive_index[0] }, Streams::TABLES);
-    let sun = Light { mu_s, direct: 1.0, diffuse: 0.0 };
+    let sun = Light::sun(mu_s, 1.0);
     leaving(&medium, 0, &Layer::new(&slab, depth), 1.0, sun, WaterOrders::All)
 }
 

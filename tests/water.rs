@@ -8,5 +8,11 @@ mod closed_forms;
 mod media;
 #[path = "water/monte_carlo.rs"]
 mod monte_carlo;
+#[path = "water/ocean.rs"]
+mod ocean;
+#[path = "water/orders.rs"]
+mod orders;
 #[path = "water/presets.rs"]
 mod presets;
+#[path = "water/skylight.rs"]
+mod skylight;

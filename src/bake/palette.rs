@@ -105,7 +105,8 @@ impl Palette {
     }
 }
 
-fn judge(weights: &[[f64; 3]], transfers: &[Vec<f64>], references: &[[f64; 3]]) -> ColourError {
+/// ΔE2000 of weights on transfers at their wavelengths, against XYZ.
+pub fn judge(weights: &[[f64; 3]], transfers: &[Vec<f64>], references: &[[f64; 3]]) -> ColourError {
     let mut errors: Vec<f64> = transfers
         .iter()
         .zip(references)

@@ -94,7 +94,7 @@ impl Settings {
             "water_size": self.waters.size,
             "water_orders": match self.waters.orders {
                 WaterOrders::All => json!("all"),
-                WaterOrders::Single => json!({ "first": 1 }),
+                WaterOrders::First(n) => json!({ "first": n }),
             },
             "underwater": self.waters.underwater,
             "shipped_preset": self.shipped_preset,

@@ -5,7 +5,7 @@ mod progress;
 mod settings;
 mod summary;
 
-use super::machine::{IsaChoice, orders, share_threads};
+use super::machine::{IsaChoice, orders, share_threads, water_orders};
 use super::memory;
 use crate::bake::bake;
 use crate::bake::memory::estimate;
@@ -14,6 +14,7 @@ use crate::error::{Error, Result};
 use crate::export::staging::Staging;
 use crate::preset::{self, Planet};
 use crate::spectrum::ColourSpace;
+use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
 use jobs::{Bounds, run_all};
 use progress::{Progress, stages};
@@ -50,9 +51,9 @@ pub struct Args {
     /// Tables for observers under water too
     #[arg(long)]
     underwater: bool,
-    /// Orders of scattering in the water: auto (all), or 1 (the paper's shortcut)
-    #[arg(long, default_value = "auto", value_parser = ["auto", "1"])]
-    water_orders: String,
+    /// Orders of scattering of sunlight in the water: auto (all), or a number; 1 is the paper's shortcut
+    #[arg(long, default_value = "auto", value_name = "auto|N", value_parser = water_orders)]
+    water_orders: WaterOrders,
     /// Orders of scattering to sum: auto (until converged) or a number
     #[arg(long, default_value = "auto", value_parser = |t: &str| orders(t, TOLERANCE))]
     orders: Orders,

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::isa::Isa;
+use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
 
 /// Which instruction set the hot loops use; the bytes are the same for all.
@@ -115,3 +116,15 @@ pub fn orders(text: &str, tolerance: f64) -> std::result::Result<Orders, String>
         _ => Err("expected `auto` or a number from 1 to 10000".into()),
     }
 }
+
+/// `auto` or a number of orders of scattering in water.
+pub fn water_orders(text: &str) -> std::result::Result<WaterOrders, String> {
+    match text.parse::<usize>() {
+        _ if text == "auto" => Ok(WaterOrders::All),
+        Ok(n) if (1..=MOST_WATER_ORDERS).contains(&n) => Ok(WaterOrders::First(n)),
+        _ => Err(format!("expected `auto` or a number from 1 to {MOST_WATER_ORDERS}")),
+    }
+}
+
+/// Orders in water that can be asked for: a scattering albedo of 0.99 leaves 1e-4 of the light after as many.
+pub const MOST_WATER_ORDERS: usize = 1000;

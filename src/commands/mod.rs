@@ -10,6 +10,7 @@ mod presets_colour;
 mod presets_show;
 mod presets_water;
 pub mod reference;
+mod reference_water;
 pub mod sample;
 mod sample_water;
 mod text;

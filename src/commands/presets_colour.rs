@@ -129,7 +129,7 @@ pub fn deep_water(water: &Water) -> Result<Colours> {
     let weights = hat_weights(&nm, &preset::load("earth", &[])?.star.irradiance);
     let of = |w: usize| {
         let slab = Slab::new(&medium, w, Surface { n: medium.refractive_index[w] }, Streams::TABLES);
-        let light = Light { mu_s: MU_S, direct: 1.0, diffuse: 0.0 };
+        let light = Light::sun(MU_S, 1.0);
         PI * leaving(&medium, w, &Layer::new(&slab, DEEP), 1.0, light, WaterOrders::All)[0]
     };
     let reflectance: Vec<f64> = (0..nm.len()).into_par_iter().map(of).collect();

@@ -26,8 +26,7 @@ fn physics(water: &Water, wavelengths: &[f64]) -> Physics {
         reflectance: all(&|w| {
             let slab = Slab::new(&medium, w, Surface { n: medium.refractive_index[w] }, Streams::TABLES);
             let layer = Layer::new(&slab, 1e5);
-            let light = Light { mu_s: MU_S, direct: 1.0, diffuse: 0.0 };
-            leaving(&medium, w, &layer, 1.0, light, WaterOrders::All)[0]
+            leaving(&medium, w, &layer, 1.0, Light::sun(MU_S, 1.0), WaterOrders::All)[0]
         }),
     }
 }

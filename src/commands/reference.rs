@@ -22,10 +22,10 @@ pub struct Args {
     points: PathBuf,
     /// Wavelengths in nm, comma-separated
     #[arg(long, value_delimiter = ',', default_value = "440,550,680", value_name = "LIST")]
-    wavelengths: Vec<f64>,
+    pub(super) wavelengths: Vec<f64>,
     /// Paths at most for each point and wavelength [default: 1048576, or 268435456 with --stderr]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
-    paths: Option<u64>,
+    pub(super) paths: Option<u64>,
     /// Stop where the standard error is below this part of the radiance
     #[arg(long, value_name = "PERCENT", value_parser = ratio)]
     stderr: Option<f64>,
@@ -34,7 +34,7 @@ pub struct Args {
     orders: Option<u64>,
     /// Seed of the random numbers: the same seed gives the same bytes
     #[arg(long, default_value_t = 0)]
-    seed: u64,
+    pub(super) seed: u64,
     /// Add a column with the radiances of orders 1, 2, … (1/sr), separated by semicolons
     #[arg(long)]
     per_order: bool,
@@ -43,7 +43,16 @@ pub struct Args {
     set: Vec<String>,
     /// Threads [default: all]; the answer does not depend on them
     #[arg(long, value_name = "N")]
-    threads: Option<usize>,
+    pub(super) threads: Option<usize>,
+    /// The light out of a water under this planet's air (a name, or a path), seen from above it, not the air's
+    #[arg(long, value_name = "WATER", requires = "depth", conflicts_with_all = ["orders", "stderr", "per_order"])]
+    water: Option<String>,
+    /// With --water: depth of the water, m
+    #[arg(long, value_name = "M", requires = "water")]
+    pub(super) depth: Option<f64>,
+    /// With --water: the mean over azimuth, which tables of water hold
+    #[arg(long, requires = "water")]
+    pub(super) azimuth_mean: bool,
     /// No progress on stderr
     #[arg(long)]
     quiet: bool,
@@ -66,6 +75,9 @@ pub fn run(args: &Args) -> Result<()> {
     let points = read_points(&args.points)?;
     in_range(&args.wavelengths).map_err(|reason| Error::Argument(format!("--wavelengths: {reason}")))?;
     let medium = medium(args)?;
+    if let Some(name) = &args.water {
+        return super::reference_water::run(args, name, &medium, &points);
+    }
     let estimates = with_threads(args.threads, || trace(args, &medium, &points))?;
     complain(args, &estimates);
     let mut out = Vec::new();

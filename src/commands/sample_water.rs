@@ -1,15 +1,16 @@
 //! `tyndall sample --water`: the light out of a baked water, and the slab solver's own beside it.
 
-use super::machine::with_threads;
+use super::machine::{MOST_WATER_ORDERS, with_threads};
 use super::sample::{Args, baked_orders, exact_wavelengths, spectral};
 use super::text::print;
+use crate::bake::water::{FINE, Skylight, Split};
 use crate::error::{Error, Result};
 use crate::export::manifest::Manifest;
 use crate::points::Point;
 use crate::preset::{Planet, Water};
 use crate::sky::Component;
 use crate::sky::water::{WaterSky, WaterView};
-use crate::transport::slab::{Layer, Light, Slab, Streams, Surface, WaterOrders, leaving};
+use crate::transport::slab::{Layer, Light, Slab, Streams, Surface, WaterOrders, leaving, within};
 use crate::transport::solve::{Resolution, Solution};
 use rayon::prelude::*;
 
@@ -26,12 +27,16 @@ pub fn run(args: &Args, name: &str, manifest: &Manifest, planet: &Planet, points
         if !(0.0..=depth).contains(&d) {
             return Err(Error::Argument(format!("--observer-depth {d}: must be from 0 to --depth {depth}")));
         }
-        if !sky.has_underwater() || args.exact {
-            let reason = "--observer-depth: reads tables of a bake with --underwater, and has no --exact";
+        if !sky.has_underwater() && !args.exact {
+            let reason = "--observer-depth: needs a bake with --underwater, or --exact";
             return Err(Error::Argument(reason.into()));
         }
     }
-    let views = points.iter().map(|p| view(args, planet, depth, p)).collect::<Result<Vec<_>>>()?;
+    let meet = |p: &Point| match args.observer_depth {
+        Some(_) => Ok(WaterView { depth, mu: p.mu, mu_s: p.mu_s }),
+        None => view(planet.ground_radius, depth, p).map(|(view, _)| view),
+    };
+    let views = points.iter().map(meet).collect::<Result<Vec<_>>>()?;
     let (nm, light) = if args.exact {
         let nm = exact_wavelengths(args, manifest)?;
         let light = with_threads(args.threads, || exact(args, name, manifest, planet, &nm, &views))??;
@@ -48,22 +53,25 @@ pub fn run(args: &Args, name: &str, manifest: &Manifest, planet: &Planet, points
     print(&String::from_utf8_lossy(&out))
 }
 
-/// The view where it meets the water: down the ray from an observer above, angles there.
-fn view(args: &Args, planet: &Planet, depth: f64, p: &Point) -> Result<WaterView> {
-    if args.observer_depth.is_some() {
-        return Ok(WaterView { depth, mu: p.mu, mu_s: p.mu_s });
-    }
-    let ground = planet.ground_radius;
+/// The view where it meets the water, down the ray from an observer above, angles there; and the azimuth between
+/// view and sun there, rad. Errors: the ray never meets it.
+pub(super) fn view(ground: f64, depth: f64, p: &Point) -> Result<(WaterView, f64)> {
     let r = ground + p.altitude;
     let across2 = r * r * (1.0 - p.mu * p.mu);
     if p.mu >= 0.0 || across2 > ground * ground {
         let reason = format!("mu_view {} at {} m never meets the water: look down", p.mu, p.altitude);
         return Err(Error::Argument(format!("--water {reason}")));
     }
+    if p.altitude == 0.0 {
+        return Ok((WaterView { depth, mu: -p.mu, mu_s: p.mu_s }, p.azimuth_deg.to_radians()));
+    }
     let cosine = (1.0 - across2 / (ground * ground)).max(0.0).sqrt();
     let length = p.altitude * (r + ground) / (-r * p.mu + ground * cosine);
     let mu_s = ((r * p.mu_s + length * p.nu()) / ground).clamp(-1.0, 1.0);
-    Ok(WaterView { depth, mu: cosine, mu_s: if p.altitude == 0.0 { p.mu_s } else { mu_s } })
+    let sines = ((1.0 - cosine * cosine) * (1.0 - mu_s * mu_s)).sqrt();
+    // The angle between view and sun is the same everywhere on the ray.
+    let azimuth = if sines > 0.0 { (p.nu() + cosine * mu_s) / sines } else { 1.0 };
+    Ok((WaterView { depth, mu: cosine, mu_s }, libm::acos(azimuth.clamp(-1.0, 1.0))))
 }
 
 /// Solved afresh, air and water, `[view][wavelength]`.
@@ -79,8 +87,11 @@ fn exact(
     let preset = manifest.waters.iter().find(|w| w.name == name);
     let preset = preset.ok_or_else(|| refuse(format!("waters: {name} is missing")))?;
     let water = Water::from_resolved(&preset.resolved).map_err(|e| refuse(e.to_string()))?;
-    let single = manifest.settings["water_orders"]["first"] == 1;
-    let orders = if single { WaterOrders::Single } else { WaterOrders::All };
+    let orders = match manifest.settings["water_orders"]["first"].as_u64() {
+        None => WaterOrders::All,
+        Some(n) if (1..=MOST_WATER_ORDERS as u64).contains(&n) => WaterOrders::First(n as usize),
+        Some(n) => return Err(refuse(format!("settings.water_orders.first = {n}: out of range"))),
+    };
     let (air, media) = (planet.medium(nm), water.medium(nm));
     air.check().map_err(refuse)?;
     let baked = baked_orders(manifest).map_err(refuse)?;
@@ -89,13 +100,26 @@ fn exact(
         .into_par_iter()
         .map(|w| Slab::new(&media, w, Surface { n: media.refractive_index[w] }, Streams::TABLES))
         .collect();
+    let split = args.observer_depth.map(|_| Split::new(&air, &solution));
     let one = |v: &WaterView| -> Vec<f64> {
         let direct = solution.sun_transmittance(planet.ground_radius, v.mu_s);
-        let diffuse = solution.ground_irradiance(v.mu_s);
+        let sky = solution.ground_irradiance(v.mu_s);
+        // From above the whole sky, ring by ring; within, where its own light is seen too, its two parts.
+        let rings = split.is_none().then(|| Skylight::new(&air, &solution, v.mu_s, FINE));
         let at = |w: usize| {
-            let direct = direct[w] * v.mu_s.max(0.0);
-            let light = Light { mu_s: v.mu_s, direct, diffuse: diffuse[w] };
-            let [own, bed] = leaving(&media, w, &Layer::new(&slabs[w], v.depth), v.mu, light, orders);
+            let layer = Layer::new(&slabs[w], v.depth);
+            let sun = Light::sun(v.mu_s, direct[w] * v.mu_s.max(0.0));
+            let [own, bed] = match (&split, args.observer_depth) {
+                (Some(split), Some(d)) => {
+                    let light = Light { sky: split.parts(v.mu_s, w, sky[w]), ..sun };
+                    let observer = if v.depth > 0.0 { d / v.depth } else { 0.0 };
+                    within(&media, w, &layer, (v.mu, observer), light, orders)
+                }
+                _ => {
+                    let beams = rings.as_ref().map(|r| r.beams(w, sky[w])).unwrap_or_default();
+                    leaving(&media, w, &layer, v.mu, Light { beams: &beams, ..sun }, orders)
+                }
+            };
             match args.component {
                 Component::Total => own + bed,
                 Component::Scattering => own,

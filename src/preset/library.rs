@@ -33,6 +33,8 @@ const WATERS: &[(&str, &str)] = &[
     ("jerlov-1c", include_str!("../../presets/waters/jerlov-1c.json")),
     ("jerlov-3c", include_str!("../../presets/waters/jerlov-3c.json")),
     ("jerlov-5c", include_str!("../../presets/waters/jerlov-5c.json")),
+    ("jerlov-7c", include_str!("../../presets/waters/jerlov-7c.json")),
+    ("jerlov-9c", include_str!("../../presets/waters/jerlov-9c.json")),
 ];
 
 /// Name and CSV text of every shipped spectrum.

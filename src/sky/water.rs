@@ -187,13 +187,14 @@ impl WaterSky {
         self.underwater.is_some()
     }
 
-    /// Irradiance that the sun brings into the water and that of the surface by the sky, over the star's.
-    fn lit(&self, mu_s: f64) -> [[f64; 4]; 2] {
+    /// Irradiance that the sun brings into the water and those of the surface by both parts of the sky, over the
+    /// star's.
+    fn lit(&self, mu_s: f64) -> [[f64; 4]; 3] {
         let sun = EvenCosine { name: "sun", least: self.lowest_sun };
-        let Some(x) = sun.texel(mu_s, self.light.size[0]) else { return [[0.0; 4]; 2] };
-        let [direct, diffuse] = [0, 1].map(|row| self.light.row(x, row, 0));
+        let Some(x) = sun.texel(mu_s, self.light.size[0]) else { return [[0.0; 4]; 3] };
+        let [direct, high, low] = [0, 1, 2].map(|row| self.light.row(x, row, 0));
         let passed = self.passes(mu_s.max(0.0));
-        [std::array::from_fn(|w| direct[w] * passed[w]), diffuse]
+        [std::array::from_fn(|w| direct[w] * passed[w]), high, low]
     }
 
     /// 1 − F of a cosine in the air.
@@ -202,13 +203,14 @@ impl WaterSky {
     }
 
     /// Radiance of the bed with all its bounces.
-    fn bed(&self, depth: Texel, sun: Texel, [entered, sky]: &[[f64; 4]; 2]) -> [f64; 4] {
+    fn bed(&self, depth: Texel, sun: Texel, [entered, high, low]: &[[f64; 4]; 3]) -> [f64; 4] {
         let none = (0, 0.0);
         let by_sun = self.seabed_sun.at([depth, sun, none, none]);
-        let [by_sky, back] = [0, 1].map(|row| self.seabed_depth.row(depth, row, 0));
+        let [by_high, by_low, back] = [0, 1, 2].map(|row| self.seabed_depth.row(depth, row, 0));
         std::array::from_fn(|w| {
             let albedo = self.bed.get(w).copied().unwrap_or(0.0);
-            albedo * (entered[w] * by_sun[w] + sky[w] * by_sky[w]) / (PI - albedo * back[w])
+            let lit = entered[w] * by_sun[w] + high[w] * by_high[w] + low[w] * by_low[w];
+            albedo * lit / (PI - albedo * back[w])
         })
     }
 
@@ -228,12 +230,14 @@ impl WaterSky {
             let (d, v) = place(&self.water);
             let water = self.water.at([d, v, sun, none]);
             let (d, v) = place(&self.sky);
-            let sky = self.sky.at([d, v, none, none]);
+            let [high, low] = [0, 1].map(|part| self.sky.at([d, v, whole(part, self.sky.size[2]), none]));
             let risen = |w: usize| match self.kappa.get(w) {
                 Some(&kappa) if kappa > 0.0 => -libm::expm1(-kappa * view.depth),
                 _ => 1.0,
             };
-            sum = std::array::from_fn(|w| risen(w) * (lit[0][w] * water[w] + lit[1][w] * sky[w]));
+            sum = std::array::from_fn(|w| {
+                risen(w) * (lit[0][w] * water[w] + lit[1][w] * high[w] + lit[2][w] * low[w])
+            });
         }
         if component != Component::Scattering {
             let (d, v) = place(&self.seabed);
@@ -262,8 +266,9 @@ impl WaterSky {
             let (d, v) = place(own);
             let sun = texel(view.mu_s.max(0.0), own.size[2]);
             let water = own.at([d, v, sun, texel(share, own.size[3])]);
-            let above = sky.at([d, v, texel(share, sky.size[2]), none]);
-            sum = std::array::from_fn(|w| lit[0][w] * water[w] + lit[1][w] * above[w]);
+            let part = |k| sky.at([d, v, whole(k, sky.size[2]), texel(share, sky.size[3])]);
+            let [high, low] = [0, 1].map(part);
+            sum = std::array::from_fn(|w| lit[0][w] * water[w] + lit[1][w] * high[w] + lit[2][w] * low[w]);
         }
         if component != Component::Scattering {
             let (d, v) = place(seabed);

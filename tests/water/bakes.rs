@@ -79,7 +79,9 @@ fn tables_answer_what_the_solver_says() {
             let truth = if exact { sample(&bake, &[&ask[..], &["--exact"]].concat()) } else { found.clone() };
             assert_eq!(found.len(), truth.len());
             for (k, (f, t)) in found.iter().zip(&truth).enumerate() {
-                let limit = 0.02 * t + 1e-9;
+                // Answers take the whole sky, tables two parts of it: most apart under a sun at the horizon.
+                let low = VIEWS[k / (found.len() / VIEWS.len())].2 < 0.1;
+                let limit = if low { 0.04 } else { 0.02 } * t + 1e-9;
                 assert!((f - t).abs() < limit, "{depth} m {component} value {k}: {f} is not {t}");
             }
             parts.push(found);
@@ -140,8 +142,17 @@ fn options() {
     }
     let ask = ["--water", "sandy", "--depth", "6", "--component", "scattering"];
     let once = bake(&dir.path().join("c"), "sandy", &[&size[..], &["--water-orders", "1"]].concat());
-    let (whole, single) = (sample(&all, &ask), sample(&once, &ask));
-    assert!(whole.iter().zip(&single).take(4).all(|(w, s)| s < w && *s > 0.0), "{whole:?} {single:?}");
+    let more = bake(&dir.path().join("d"), "sandy", &[&size[..], &["--water-orders", "3"]].concat());
+    let [whole, single, three] = [&all, &once, &more].map(|bake| sample(bake, &ask));
+    let rises = |k: usize| single[k] > 0.0 && single[k] < three[k] && three[k] < whole[k];
+    assert!((0..4).all(rises), "{single:?} {three:?} {whole:?}");
+    // Solved afresh with the orders of the bake, and at a depth in the water.
+    let exact = sample(&more, &[&ask[..], &["--exact"]].concat());
+    assert!(exact.iter().zip(&three).take(4).all(|(e, t)| (e / t - 1.0).abs() < 0.06), "{exact:?} {three:?}");
+    let deep = [&ask[..], &["--observer-depth", "2"]].concat();
+    let (seen, exact) = (sample(&all, &deep), sample(&all, &[&deep[..], &["--exact"]].concat()));
+    let off = |k: usize| (seen[k] / exact[k] - 1.0).abs();
+    assert!((0..4).all(|k| off(k) < 0.1), "{seen:?} {exact:?}");
     // Straight down from just below the surface, over what leaves: n² / (1 − F) of normal incidence.
     let within = sample(&all, &[&ask[..], &["--observer-depth", "0"]].concat());
     let n: f64 = 1.344;
@@ -166,10 +177,16 @@ fn slips_are_refused() {
         (vec!["bake", "earth", "--waters", "none,muddy"], "`none`"),
         (vec!["bake", "earth", "--waters", "muddy,muddy"], "two are named muddy"),
         (vec!["bake", "earth", "--underwater"], "needs --waters"),
+        (vec!["bake", "earth", "--water-orders", "2"], "needs --waters"),
+        (vec!["bake", "earth", "--waters", "muddy", "--water-orders", "0"], "a number from 1"),
         (vec!["bake", "earth", "--waters", "muddy", "--size", "water=1x4x4"], "three numbers"),
         (vec!["sample", bake, "--points", views, "--water", "muddy"], "--depth"),
         (vec!["sample", bake, "--points", views, "--water", "sandy", "--depth", "1"], "there is muddy"),
         (vec!["sample", bake, "--points", views, "--water", "muddy", "--depth", "101"], "0 to 100 m"),
+        (
+            vec!["reference", "earth", "--points", views, "--water", "muddy", "--depth", "0"],
+            "--depth 0: must be over 0",
+        ),
         (vec!["sample", bake, "--points", up, "--water", "muddy", "--depth", "1"], "look down"),
         (
             vec![

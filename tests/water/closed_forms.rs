@@ -3,7 +3,7 @@
 use super::media::*;
 use std::f64::consts::PI;
 use tyndall::medium::PhaseFunction::{HenyeyGreenstein, Isotropic, Rayleigh};
-use tyndall::transport::slab::{Layer, Streams, Surface, fresnel, phase_mean};
+use tyndall::transport::slab::{Dome, Layer, Streams, Surface, fresnel, phase_mean};
 
 fn close(found: f64, expected: f64, relative: f64) {
     assert!((found / expected - 1.0).abs() < relative, "{found} is not {expected}");
@@ -62,7 +62,7 @@ fn energy_is_conserved() {
     let slab = slab(&medium);
     for depth in [0.3, 3.0, 30.0] {
         let layer = Layer::new(&slab, depth);
-        for field in [layer.sun(&slab.beam(0.85)), layer.sky()] {
+        for field in [layer.sun(&slab.beam(0.85)), layer.sky(Dome::Even)] {
             let (up, down) = layer.irradiance(&field, 0.0);
             let net = down - up;
             close(layer.bed_irradiance(&field), net, 2e-4);

@@ -1,7 +1,7 @@
 //! Waters for tests, and their light from the solver.
 
 use tyndall::medium::{PhaseFunction, WaterMedium, WaterScatterer};
-use tyndall::transport::slab::{Layer, Pair, Slab, Streams, Surface, phase_mean, seabed_radiance};
+use tyndall::transport::slab::{Dome, Layer, Pair, Slab, Streams, Surface, phase_mean, seabed_radiance};
 
 /// One wavelength, one scatterer.
 pub fn water(absorption: f64, scattering: f64, phase: PhaseFunction, n: f64, bed: f64) -> WaterMedium {
@@ -56,7 +56,7 @@ pub fn leaving_of_sky(medium: &WaterMedium, depth: f64, view: f64) -> [f64; 2] {
     let slab = slab(medium);
     let layer = Layer::new(&slab, depth);
     let inside = slab.view(slab.surface.cosine_in_water(view));
-    let (sky, bed) = (layer.sky(), layer.bed());
+    let (sky, bed) = (layer.sky(Dome::Even), layer.bed());
     let radiance =
         seabed_radiance(medium.seabed_albedo[0], layer.bed_irradiance(&sky), layer.bed_irradiance(&bed));
     let up = |field, scale: f64| scale * layer.up(field, &inside, [0.0; 2], 0.0) * slab.surface.leaves(view);

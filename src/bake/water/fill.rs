@@ -1,12 +1,12 @@
 //! Texels of one water's tables.
 
-use super::shared::{baked, channels_of};
+use super::shared::{self, baked, channels_of};
 use super::{LAYOUT, Waters};
 use crate::bake::tables::{Baked, Channel};
 use crate::medium::WaterMedium;
 use crate::preset::Water;
 use crate::table::{EvenCosine, WaterAxes};
-use crate::transport::slab::{Angles, Layer, Slab};
+use crate::transport::slab::{Angles, Dome, Layer, Slab};
 use rayon::prelude::*;
 
 /// Texels of depth of tables without a sun axis, which cost little.
@@ -44,13 +44,14 @@ const SHALLOW: f64 = 1e-4;
 struct Column {
     /// `[sun][view]`
     water: Vec<f64>,
-    /// `[view]`
+    /// `[part][view]`
     sky: Vec<f64>,
+    /// `[view]`
     seabed: Vec<f64>,
     /// `[sun]`
     seabed_sun: Vec<f64>,
-    /// Irradiance of the bed by the sky, and by itself.
-    seabed_depth: [f64; 2],
+    /// Irradiance of the bed by both parts of the sky, and by itself.
+    seabed_depth: [f64; 3],
 }
 
 /// W, S, U, W_b, and S_b with r: see the module's formula.
@@ -92,13 +93,12 @@ pub(super) fn tables(water: &Water, media: &WaterMedium, slabs: &[Slab], waters:
     let (deep, sun) = (axes.depth_axis(DEPTHS), SUN.axis(suns));
     let name = |what: &str| format!("{}{what}", water.name);
     let of = |what: &str, unit: &str| -> Vec<Channel> { channels_of(&media.wavelengths_nm, what, unit) };
-    let rows = crate::export::manifest::Axis {
-        name: "row".into(),
-        size: 2,
-        formula: "0: by a sky of unit irradiance; 1: by the bed itself, of unit radiance".into(),
-        constants: Default::default(),
-        unit: "1".into(),
-    };
+    let rows = shared::listed(
+        "row",
+        3,
+        format!("by a sky of unit irradiance, {PARTS}; 2: by the bed itself, of unit radiance"),
+    );
+    let parts = shared::listed("part", 2, PARTS.into());
     vec![
         baked(
             LAYOUT,
@@ -113,12 +113,12 @@ pub(super) fn tables(water: &Water, media: &WaterMedium, slabs: &[Slab], waters:
         baked(
             LAYOUT,
             name("_sky"),
-            vec![plain(&deep), plain(&view)],
+            vec![plain(&deep), plain(&view), parts],
             of(
-                "radiance below the surface over n^2, of water over a black bed, per irradiance of the surface by the sky and 1 - exp(-kappa D)",
+                "radiance below the surface over n^2, of water over a black bed, per irradiance of the surface by a sky and 1 - exp(-kappa D)",
                 "1/sr",
             ),
-            |[i, j, _], w| fine[w][i].sky[j],
+            |[i, j, part], w| fine[w][i].sky[part * views + j],
         ),
         baked(
             LAYOUT,
@@ -152,17 +152,20 @@ pub(super) fn plain(formula: &crate::table::AxisFormula) -> crate::export::manif
     axis
 }
 
+/// The parts of a sky, as an axis lists them.
+pub(super) const PARTS: &str = "0: of a radiance in proportion to mu; 1: in proportion to (1 - mu)^2";
+
 /// `whole`: the table with a sun and a view axis; `risen`: what water's own light is divided by.
 fn column(layer: &Layer, angles: &Angles, whole: bool, risen: f64) -> Column {
     let n2 = layer.slab.surface.n * layer.slab.surface.n;
-    let (sky, bed) = (layer.sky(), layer.bed());
+    let (skies, bed) = (Dome::PARTS.map(|dome| layer.sky(dome)), layer.bed());
     let see = |field, scale: f64| -> Vec<f64> {
         angles.views.iter().map(|v| layer.up(field, v, [0.0; 2], 0.0) * scale).collect()
     };
     let mut out = Column {
-        sky: see(&sky, 1.0 / (n2 * risen)),
+        sky: skies.iter().flat_map(|sky| see(sky, 1.0 / (n2 * risen))).collect(),
         seabed: see(&bed, 1.0 / n2),
-        seabed_depth: [layer.bed_irradiance(&sky), layer.bed_irradiance(&bed)],
+        seabed_depth: [&skies[0], &skies[1], &bed].map(|field| layer.bed_irradiance(field)),
         ..Column::default()
     };
     for (k, beam) in angles.beams.iter().enumerate() {

@@ -2,19 +2,21 @@
 //!
 //! Tables hold what the water does to light and leave out what the surface and the air do, so that they are
 //! smooth and that an engine may tilt the surface: radiance just below it over n², per unit of what enters. With
-//! F Fresnel's reflectance, E_sun and E_sky the irradiances of the surface, A the albedo of the bed,
-//!   L = (1 − F(mu)) [ (1 − e^{−κD}) ((1 − F(mu_s)) E_sun W(D, mu, mu_s) + E_sky S(D, mu))
+//! F Fresnel's reflectance, E_sun the irradiance of the surface by the sun and E_i those by two parts of the sky, one
+//! as bright as the cosine of the zenith angle and one as the square of what that lacks of 1, A the albedo of the bed,
+//!   L = (1 − F(mu)) [ (1 − e^{−κD}) ((1 − F(mu_s)) E_sun W(D, mu, mu_s) + Σ E_i S_i(D, mu))
 //!                     + U(D, mu) A B / (π − A r(D)) ]
-//!   B = (1 − F(mu_s)) E_sun W_b(D, mu_s) + E_sky S_b(D)
+//!   B = (1 − F(mu_s)) E_sun W_b(D, mu_s) + Σ E_i B_i(D)
 //! is what leaves the water: the water's own light, and that of the bed with every bounce between bed, water and
-//! surface. W is `<name>`, S `<name>_sky`, U `<name>_seabed`, W_b `<name>_seabed_sun`; S_b and r are the rows of
-//! `<name>_seabed_depth`, E_sun and E_sky those of `irradiance`; F is in `fresnel`; κ is the constant
+//! surface. W is `<name>`, S_i `<name>_sky`, U `<name>_seabed`, W_b `<name>_seabed_sun`; B_i and r are the rows of
+//! `<name>_seabed_depth`, E_sun and E_i those of `irradiance`; F is in `fresnel`; κ is the constant
 //! `water_<name>_kappa_per_m`, which takes the steep rise of shallow water out of W and S.
 
 mod colour;
 mod fill;
 mod report;
 mod shared;
+mod skylight;
 mod underwater;
 
 use super::palette::Palette;
@@ -30,7 +32,8 @@ use std::collections::BTreeMap;
 
 pub use colour::spectra;
 pub use report::report;
-pub use shared::{DIFFUSE, DIRECT, LAZANYI, REFLECTED, TRANSMITTED, UNDERSIDE};
+pub use shared::{LAZANYI, REFLECTED, TRANSMITTED, UNDERSIDE};
+pub use skylight::{FINE, Skylight, Split};
 
 /// Name of the layout and of its folder.
 pub const LAYOUT: &str = "water";
@@ -60,8 +63,10 @@ pub struct WaterTables {
     pub tables: Vec<Baked>,
     pub matrices: BTreeMap<String, Vec<Vec<f64>>>,
     pub constants: BTreeMap<String, Vec<f64>>,
-    /// ΔE2000 of the colours of four wavelengths, by water.
-    pub colours: BTreeMap<String, super::palette::ColourError>,
+    /// ΔE2000 of the colours of four wavelengths, by water: with the weights of the sky, and with its own.
+    pub colours: BTreeMap<String, [super::palette::ColourError; 2]>,
+    /// How the sky's light falls.
+    pub split: Split,
 }
 
 /// The slabs of a medium, one a wavelength.
@@ -79,11 +84,13 @@ pub fn tables(
     palette: &Palette,
 ) -> Result<WaterTables> {
     let (nm, waters) = (palette.four_nm(), &settings.waters);
+    let split = Split::new(medium, solution);
     let mut out = WaterTables {
-        tables: shared::tables(&waters.list, medium, solution, palette),
+        tables: shared::tables(&waters.list, medium, solution, palette, &split),
         matrices: BTreeMap::new(),
         constants: BTreeMap::new(),
         colours: BTreeMap::new(),
+        split,
     };
     for water in &waters.list {
         let media = water.medium(&nm);
@@ -92,7 +99,7 @@ pub fn tables(
         if waters.underwater {
             out.tables.extend(underwater::tables(water, &media, &slabs, waters.orders));
         }
-        let (matrix, error) = colour::fit(planet, water, medium, solution, palette)?;
+        let (matrix, error) = colour::fit(planet, water, medium, solution, &out.split, palette)?;
         let key = |what: &str| format!("water_{}_{what}", water.name);
         out.matrices.insert(key("rgb_from_four"), matrix);
         out.colours.insert(water.name.clone(), error);

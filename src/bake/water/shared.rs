@@ -2,6 +2,7 @@
 //! water are stored.
 
 use super::LAYOUT;
+use super::skylight::Split;
 use crate::bake::palette::Palette;
 use crate::bake::tables::{Baked, Channel};
 use crate::export::manifest::{Axis, Encoding};
@@ -15,9 +16,6 @@ use crate::transport::solve::{Solution, lowest_sun};
 const SUNS: usize = 1024;
 const ANGLES: usize = 256;
 
-/// Rows of `irradiance`.
-pub const DIRECT: usize = 0;
-pub const DIFFUSE: usize = 1;
 /// Rows of `fresnel`.
 pub const REFLECTED: usize = 0;
 pub const LAZANYI: usize = 1;
@@ -27,30 +25,40 @@ pub const TRANSMITTED: usize = 3;
 /// The largest half that a scaled channel may reach.
 const BRIGHTEST: f64 = 32768.0;
 
-pub fn tables(waters: &[Water], medium: &Medium, solution: &Solution, palette: &Palette) -> Vec<Baked> {
-    vec![light(medium, solution, palette), surfaces(waters, palette)]
+pub fn tables(
+    waters: &[Water],
+    medium: &Medium,
+    solution: &Solution,
+    palette: &Palette,
+    split: &Split,
+) -> Vec<Baked> {
+    vec![light(medium, solution, palette, split), surfaces(waters, palette)]
 }
 
-fn listed(name: &str, size: usize, formula: String) -> Axis {
+pub fn listed(name: &str, size: usize, formula: String) -> Axis {
     Axis { name: name.into(), size, formula, constants: Default::default(), unit: "1".into() }
 }
 
 /// Irradiance of a horizontal surface on the ground by the sun and by the sky.
-fn light(medium: &Medium, solution: &Solution, palette: &Palette) -> Baked {
+fn light(medium: &Medium, solution: &Solution, palette: &Palette, split: &Split) -> Baked {
     let sun = EvenCosine { name: "sun", least: lowest_sun(medium) };
-    let values: Vec<[Vec<f64>; 2]> = (0..SUNS)
+    let values: Vec<[Vec<f64>; 3]> = (0..SUNS)
         .map(|k| {
             let mu_s = sun.at(k, SUNS);
             let direct = solution.sun_transmittance(medium.ground_radius, mu_s);
             let direct = direct.iter().map(|t| t * mu_s.max(0.0)).collect();
-            [direct, solution.ground_irradiance(mu_s)]
+            let sky = solution.ground_irradiance(mu_s);
+            let part = |i| sky.iter().enumerate().map(|(w, e)| split.parts(mu_s, w, *e)[i]).collect();
+            [direct, part(0), part(1)]
         })
         .collect();
-    let rows = "0: by the sun itself; 1: by the sky (with the planet's own ground below, not water)";
+    let rows = "0: by the sun itself; 1: by the part of the sky whose radiance is in proportion to mu, the cosine of \
+                the zenith angle; 2: by the part in proportion to (1 - mu)^2 (the sky has the planet's own ground below, \
+                not water)";
     baked(
         LAYOUT,
         "irradiance".into(),
-        vec![super::fill::plain(&sun.axis(SUNS)), listed("row", 2, rows.into())],
+        vec![super::fill::plain(&sun.axis(SUNS)), listed("row", 3, rows.into())],
         channels_of(&palette.four_nm(), "irradiance of a horizontal surface over that of the star", "1"),
         |[k, row, _], w| values[k][row][palette.four[w]],
     )

@@ -2,13 +2,13 @@
 
 use super::LAYOUT;
 use super::fill::{LEAST_COSINE, SUN, axes, plain};
-use super::shared::{baked, channels_of};
+use super::shared::{self, baked, channels_of};
 use crate::bake::tables::Baked;
 use crate::export::manifest::Axis;
 use crate::medium::WaterMedium;
 use crate::preset::Water;
 use crate::table::EvenCosine;
-use crate::transport::slab::{Angles, Layer, Slab, WaterOrders};
+use crate::transport::slab::{Angles, Dome, Layer, Slab, WaterOrders};
 use rayon::prelude::*;
 
 /// Texels of depth, view, sun and observer.
@@ -18,7 +18,7 @@ pub const SIZE: [usize; 4] = [24, 64, 16, 9];
 pub(super) const VIEW: EvenCosine = EvenCosine { name: "view", least: -1.0 };
 
 /// `<name>_underwater`, `…_sky` and `…_seabed`: radiance in the water, the sun's disc left out; slices are
-/// observer · suns + sun.
+/// observer · suns + sun, and observer · parts + part of the sky.
 pub(super) fn tables(water: &Water, media: &WaterMedium, slabs: &[Slab], orders: WaterOrders) -> Vec<Baked> {
     let [depths, views, suns, observers] = SIZE;
     let axes = axes(water, media, slabs);
@@ -57,22 +57,25 @@ pub(super) fn tables(water: &Water, media: &WaterMedium, slabs: &[Slab], orders:
     );
     sunlit.axes[2] = plain(&SUN.axis(suns));
     sunlit.axes.push(observer.clone());
-    let other = |part: usize, what: &str, quantity: &str, unit: &str| {
-        let axes = vec![depth.clone(), view.clone(), observer.clone()];
+    let other = |part: usize, what: &str, last: &Axis, quantity: &str, unit: &str| {
+        let axes = vec![depth.clone(), view.clone(), last.clone()];
         baked(LAYOUT, name(what), axes, of(quantity, unit), |[i, j, o], w| at(w, part, [i, j], o))
     };
-    vec![
-        sunlit,
-        other(1, "_sky", "radiance in water over a black bed, with the sky, per its irradiance", "1/sr"),
-        other(2, "_seabed", "radiance in water, with the bed, per radiance of an evenly bright bed", "1"),
-    ]
+    let both = Axis { size: 2 * observers, ..observer.clone() };
+    let quantity = "radiance in water over a black bed, with the sky, per its irradiance";
+    let mut sky = other(1, "_sky", &both, quantity, "1/sr");
+    sky.axes[2] = shared::listed("part", 2, super::fill::PARTS.into());
+    sky.axes.push(observer.clone());
+    let quantity = "radiance in water, with the bed, per radiance of an evenly bright bed";
+    vec![sunlit, sky, other(2, "_seabed", &observer, quantity, "1")]
 }
 
-/// Light of sun, sky and bed at every observer, `[observer][sun][view]` and `[observer][view]`.
+/// Light of sun, sky and bed at every observer, `[observer][sun][view]`, `[observer][part][view]` and
+/// `[observer][view]`.
 fn column(layer: &Layer, angles: &Angles) -> [Vec<f64>; 3] {
     let [_, views, suns, observers] = SIZE;
     let fields: Vec<_> = (0..suns).map(|k| angles.sun(layer, k)).collect();
-    let (sky, bed) = (layer.sky(), layer.bed());
+    let (skies, bed) = (Dome::PARTS.map(|dome| layer.sky(dome)), layer.bed());
     let mut out = [Vec::new(), Vec::new(), Vec::new()];
     for o in 0..observers {
         let t = layer.depth * o as f64 / (observers - 1) as f64;
@@ -84,7 +87,9 @@ fn column(layer: &Layer, angles: &Angles) -> [Vec<f64>; 3] {
             let entered = 1.0 / angles.beams[k].mu;
             out[0].extend((0..views).map(|j| see(field, j, angles.pair(j, k)) * entered));
         }
-        out[1].extend((0..views).map(|j| see(&sky, j, [0.0; 2])));
+        for sky in &skies {
+            out[1].extend((0..views).map(|j| see(sky, j, [0.0; 2])));
+        }
         out[2].extend((0..views).map(|j| see(&bed, j, [0.0; 2])));
     }
     out

@@ -83,13 +83,12 @@ fn waters(args: &Args) -> Result<Waters> {
             )));
         }
     }
-    let single = args.water_orders == "1";
-    if list.is_empty() && (single || args.underwater) {
-        let option = if single { "--water-orders" } else { "--underwater" };
+    let counted = args.water_orders != WaterOrders::All;
+    if list.is_empty() && (counted || args.underwater) {
+        let option = if counted { "--water-orders" } else { "--underwater" };
         return Err(Error::Argument(format!("{option} needs --waters")));
     }
-    let orders = if single { WaterOrders::Single } else { WaterOrders::All };
-    Ok(Waters { list, underwater: args.underwater, orders, ..Waters::default() })
+    Ok(Waters { list, underwater: args.underwater, orders: args.water_orders, ..Waters::default() })
 }
 
 /// Tables of the water layout that belong to no water.

@@ -2,8 +2,10 @@
 
 use super::matrix::{Factors, Matrix};
 use super::modes::Slab;
-use super::streams::legendre_polynomials;
+use super::orders::{Later, Sweeps};
+use super::surface::Dome;
 use std::f64::consts::PI;
+use std::sync::OnceLock;
 
 /// A direction of sight in the water, with what each mode scatters into it.
 pub struct View {
@@ -33,10 +35,12 @@ pub struct Field {
     growing: Vec<f64>,
     /// 1/mu and, along the streams, up and down, of a beam.
     beam: Option<(f64, Vec<f64>, Vec<f64>)>,
-    /// Unscattered radiance from the sky, over that of [`Surface::sky_in_water`](super::Surface::sky_in_water).
-    sky: f64,
+    /// The sky whose light it is.
+    sky: Option<Dome>,
     /// Radiance of the bed.
     bed: f64,
+    /// Later orders, where their number is given.
+    later: Option<Later>,
 }
 
 /// A slab of one depth.
@@ -45,15 +49,22 @@ pub struct Layer<'a> {
     /// Scaled optical depth.
     pub depth: f64,
     factors: Factors,
+    sweeps: OnceLock<Sweeps>,
 }
 
 /// How close 1/mu of a beam may come to the rate of a mode, relatively: closer, the beam is moved aside.
 const RESONANCE: f64 = 1e-6;
 
+impl View {
+    /// Scattered light per scaled optical depth from moments, upwards (0) or downwards (1) along the view.
+    pub(super) fn scattered(&self, slab: &Slab, side: usize, moments: &[f64]) -> f64 {
+        slab.scattered(&self.polynomials[side], moments)
+    }
+}
+
 impl Slab {
     pub fn view(&self, mu: f64) -> View {
-        let degree = self.kernel.len() - 1;
-        let polynomials = [legendre_polynomials(mu, degree), legendre_polynomials(-mu, degree)];
+        let polynomials = [self.polynomials_at(mu), self.polynomials_at(-mu)];
         let modes = [0, 1]
             .map(|side: usize| self.moments.iter().map(|m| self.scattered(&polynomials[side], m)).collect());
         View { mu, polynomials, modes }
@@ -99,7 +110,7 @@ impl<'a> Layer<'a> {
                 (false, false) => down.at(i, j),
             }
         });
-        Layer { slab, depth, factors: matrix.factorise() }
+        Layer { slab, depth, factors: matrix.factorise(), sweeps: OnceLock::new() }
     }
 
     /// Light of a beam over a black bed.
@@ -116,14 +127,14 @@ impl<'a> Layer<'a> {
         field
     }
 
-    /// Light of an evenly bright sky of unit irradiance over a black bed.
-    pub fn sky(&self) -> Field {
+    /// Light of a sky of unit irradiance over a black bed.
+    pub fn sky(&self, dome: Dome) -> Field {
         let n = self.slab.nodes.len();
         let mut right = vec![0.0; 2 * n];
         for (i, &(mu, _)) in self.slab.nodes.iter().enumerate() {
-            right[i] = self.slab.surface.sky_in_water(mu);
+            right[i] = self.slab.surface.sky_in_water(dome, mu);
         }
-        Field { sky: 1.0, ..self.solve(&right) }
+        Field { sky: Some(dome), ..self.solve(&right) }
     }
 
     /// Light of a bed that sends out a radiance of 1 everywhere, and reflects nothing.
@@ -134,18 +145,23 @@ impl<'a> Layer<'a> {
         Field { bed: 1.0, ..self.solve(&right) }
     }
 
-    /// A beam's light without what is scattered more than once.
-    pub fn sun_once(&self, beam: &Beam) -> Field {
+    /// A beam's light of its first `orders` orders: scattered as often at most where it is seen, and once less
+    /// where it meets the bed, whose reflection counts as one. Forward peaks that are scaled away are none.
+    pub fn sun_first(&self, beam: &Beam, orders: usize) -> Field {
         let n = self.slab.nodes.len();
         let none = vec![0.0; n];
+        let later = (orders > 1 && self.depth > 0.0).then(|| {
+            let sweeps = self.sweeps.get_or_init(|| Sweeps::new(self.slab, self.depth));
+            sweeps.orders_below(self.slab, beam, orders)
+        });
         let beam = Some((1.0 / beam.mu, none.clone(), none.clone()));
-        Field { decaying: none.clone(), growing: none, beam, sky: 0.0, bed: 0.0 }
+        Field { decaying: none.clone(), growing: none, beam, sky: None, bed: 0.0, later }
     }
 
     fn solve(&self, right: &[f64]) -> Field {
         let mut x = self.factors.solve(right);
         let growing = x.split_off(right.len() / 2);
-        Field { decaying: x, growing, beam: None, sky: 0.0, bed: 0.0 }
+        Field { decaying: x, growing, beam: None, sky: None, bed: 0.0, later: None }
     }
 
     /// Radiance on its way up along a view at scaled optical depth `t` below the surface.
@@ -159,6 +175,9 @@ impl<'a> Layer<'a> {
         if let Some((a, ..)) = &field.beam {
             sum += pair[0] * libm::exp(-a * t) * against(*a, view.mu, left);
         }
+        if let Some(later) = &field.later {
+            sum += later.up(self.slab, view, t);
+        }
         sum
     }
 
@@ -168,7 +187,7 @@ impl<'a> Layer<'a> {
         let steep = 1.0 / view.mu;
         let surface = &self.slab.surface;
         let mirrored = surface.reflects_down(view.mu);
-        let mut top = field.sky * surface.sky_in_water(view.mu);
+        let mut top = field.sky.map_or(0.0, |dome| surface.sky_in_water(dome, view.mu));
         if mirrored > 0.0 {
             top += mirrored * self.up(field, view, pair, 0.0);
         }
@@ -180,6 +199,9 @@ impl<'a> Layer<'a> {
         }
         if let Some((a, ..)) = &field.beam {
             sum += pair[1] * along(*a, steep, t) * steep;
+        }
+        if let Some(later) = &field.later {
+            sum += later.down(self.slab, view, t);
         }
         sum
     }
@@ -212,6 +234,11 @@ impl<'a> Layer<'a> {
         if let Some((a, ..)) = &field.beam {
             down += libm::exp(-a * t) / a;
         }
+        if let Some(later) = &field.later {
+            let [from_below, from_above] = later.irradiance(t);
+            up += from_below;
+            down += from_above;
+        }
         (up, down)
     }
 
@@ -228,12 +255,12 @@ pub fn seabed_radiance(albedo: f64, lit: f64, returned: f64) -> f64 {
 }
 
 /// ∫₀ˣ e^{−k s} e^{−s/mu} ds / mu
-fn against(k: f64, mu: f64, x: f64) -> f64 {
+pub(super) fn against(k: f64, mu: f64, x: f64) -> f64 {
     -libm::expm1(-(k + 1.0 / mu) * x) / (1.0 + k * mu)
 }
 
 /// ∫₀ˣ e^{−k s} e^{−b (x − s)} ds, without cancellation where k is close to b.
-fn along(k: f64, b: f64, x: f64) -> f64 {
+pub(super) fn along(k: f64, b: f64, x: f64) -> f64 {
     let (least, apart) = (k.min(b), (k - b).abs() * x);
     let mean = if apart < 1e-8 { 1.0 } else { -libm::expm1(-apart) / apart };
     libm::exp(-least * x) * x * mean

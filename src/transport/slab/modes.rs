@@ -1,7 +1,7 @@
 //! The exponentials of depth that light in homogeneous water is made of, at one wavelength.
 
 use super::matrix::Matrix;
-use super::streams::{legendre_polynomials, streams};
+use super::streams::{legendre, streams};
 use super::{Streams, Surface};
 use crate::medium::WaterMedium;
 use std::f64::consts::PI;
@@ -17,7 +17,9 @@ pub struct Slab {
     pub extinction: f64,
     /// ω / (1 − ω f), with which the exact phase function scatters once per scaled optical depth.
     pub once: f64,
-    /// ω (1 − f) / (1 − ω f) / 2 · (2l + 1) χ'_l.
+    /// Fourier mode in azimuth: light is Σ (2 − δ_m0) I_m cos(m azimuth).
+    pub(super) mode: usize,
+    /// ω (1 − f) / (1 − ω f) / 2 · (2l + 1) χ'_l, for l from the mode on.
     pub(super) kernel: Vec<f64>,
     /// Cosines and weights of the streams.
     pub(super) nodes: Vec<(f64, f64)>,
@@ -43,6 +45,17 @@ impl Slab {
     /// z = √(mu w) D these are z' = Q y, y' = P z of symmetric positive definite P and Q, and P = L Lᵀ makes
     /// Lᵀ Q L the symmetric matrix whose eigenvalues are the squared rates.
     pub fn new(medium: &WaterMedium, w: usize, surface: Surface, resolution: Streams) -> Slab {
+        Slab::of_mode(medium, w, surface, resolution, 0)
+    }
+
+    /// The same for a Fourier mode in azimuth: polynomials become associated ones, whose parity goes by l − m.
+    pub fn of_mode(
+        medium: &WaterMedium,
+        w: usize,
+        surface: Surface,
+        resolution: Streams,
+        mode: usize,
+    ) -> Slab {
         let nodes = streams(surface.critical(), resolution.per_panel);
         // Panels of p nodes integrate degree 2p − 1 exactly, which keeps the phase function normalised.
         let degree = 2 * resolution.per_panel - 1;
@@ -52,15 +65,14 @@ impl Slab {
         let scattering = medium.scattering(w);
         let albedo = if extinction > 0.0 { (scattering / extinction).min(MOST_ALBEDO) } else { 0.0 };
         let scaled = albedo * (1.0 - peak) / (1.0 - albedo * peak);
-        let kernel: Vec<f64> = (0..=degree)
+        let kernel: Vec<f64> = (mode..=degree)
             .map(|l| 0.5 * scaled * (2 * l + 1) as f64 * (chi[l] - peak) / (1.0 - peak))
             .collect();
-        let polynomials: Vec<Vec<f64>> =
-            nodes.iter().map(|&(mu, _)| legendre_polynomials(mu, degree)).collect();
+        let polynomials: Vec<Vec<f64>> = nodes.iter().map(|&(mu, _)| legendre(mu, mode, degree)).collect();
         let part = |odd: usize| {
             Matrix::of(nodes.len(), nodes.len(), |i, j| {
                 let ((mi, wi), (mj, wj)) = (nodes[i], nodes[j]);
-                let sum: f64 = (odd..=degree)
+                let sum: f64 = (odd..kernel.len())
                     .step_by(2)
                     .map(|l| 2.0 * kernel[l] * polynomials[i][l] * polynomials[j][l])
                     .sum();
@@ -75,6 +87,7 @@ impl Slab {
         let mut slab = Slab {
             reflects: nodes.iter().map(|&(mu, _)| surface.reflects_down(mu)).collect(),
             surface,
+            mode,
             extinction: extinction * (1.0 - albedo * peak),
             once: albedo / (1.0 - albedo * peak),
             kernel,
@@ -128,6 +141,24 @@ impl Slab {
         m
     }
 
+    /// The mode's polynomials at a cosine.
+    pub(super) fn polynomials_at(&self, mu: f64) -> Vec<f64> {
+        legendre(mu, self.mode, self.mode + self.kernel.len() - 1)
+    }
+
+    /// Scattered light per scaled optical depth from moments, upwards and downwards along every stream.
+    pub(super) fn sources(&self, moments: &[f64]) -> Vec<[f64; 2]> {
+        let along = |p: &Vec<f64>| {
+            let (mut even, mut odd) = (0.0, 0.0);
+            for (l, m) in moments.iter().enumerate() {
+                let part = self.kernel[l] * p[l] * m;
+                if l % 2 == 0 { even += part } else { odd += part }
+            }
+            [even + odd, even - odd]
+        };
+        self.polynomials.iter().map(along).collect()
+    }
+
     /// Scattered light per scaled optical depth from moments, into the direction of given polynomials.
     pub(super) fn scattered(&self, polynomials: &[f64], moments: &[f64]) -> f64 {
         self.kernel.iter().zip(polynomials).zip(moments).map(|((k, p), m)| k * p * m).sum()
@@ -138,7 +169,7 @@ impl Slab {
     pub(super) fn particular(&self, mu: f64) -> (Vec<f64>, Vec<f64>) {
         let n = self.nodes.len();
         let a = 1.0 / mu;
-        let beam = legendre_polynomials(-mu, self.kernel.len() - 1);
+        let beam = self.polynomials_at(-mu);
         let source = |i: usize, parity: usize| -> f64 {
             let sum: f64 = (parity..self.kernel.len())
                 .step_by(2)

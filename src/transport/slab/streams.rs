@@ -14,14 +14,19 @@ pub fn streams(critical: f64, per_panel: usize) -> Vec<(f64, f64)> {
     panel(0.0, critical).chain(panel(critical, 1.0)).collect()
 }
 
-/// P_0 … P_degree at x.
-pub fn legendre_polynomials(x: f64, degree: usize) -> Vec<f64> {
-    let mut p = vec![1.0; degree + 1];
-    if degree >= 1 {
-        p[1] = x;
+/// √((l − m)! / (l + m)!) P_l^m at x for l = m … degree, without the sign (−1)^m; P_0 … P_degree for mode 0.
+pub fn legendre(x: f64, mode: usize, degree: usize) -> Vec<f64> {
+    let mut p = vec![1.0; degree + 1 - mode];
+    for i in 1..=mode {
+        p[0] *= ((2 * i - 1) as f64 / (2 * i) as f64 * (1.0 - x * x).max(0.0)).sqrt();
     }
-    for l in 2..=degree {
-        p[l] = ((2 * l - 1) as f64 * x * p[l - 1] - (l - 1) as f64 * p[l - 2]) / l as f64;
+    if degree > mode {
+        p[1] = x * ((2 * mode + 1) as f64).sqrt() * p[0];
+    }
+    let root = |l: usize| ((l * l - mode * mode) as f64).sqrt();
+    for l in mode + 2..=degree {
+        let k = l - mode;
+        p[k] = ((2 * l - 1) as f64 * x * p[k - 1] - root(l - 1) * p[k - 2]) / root(l);
     }
     p
 }
@@ -57,10 +62,21 @@ mod tests {
         let sum =
             |p: &dyn Fn(usize) -> f64| -> f64 { (0..4).map(|l| (2 * l + 1) as f64 * chi[l] * p(l)).sum() };
         for (a, b) in [(0.7, -0.2), (0.1, 0.9), (1.0, -0.4)] {
-            let (pa, pb) = (legendre_polynomials(a, 3), legendre_polynomials(b, 3));
+            let (pa, pb) = (legendre(a, 0, 3), legendre(b, 0, 3));
             let expected = sum(&|l| pa[l] * pb[l]);
-            let mean = phase_mean(|nu| sum(&|l| legendre_polynomials(nu, 3)[l]), a, b);
+            let phase = |nu: f64| sum(&|l| legendre(nu, 0, 3)[l]);
+            let mean = phase_mean(phase, a, b);
             assert!((mean - expected).abs() < 2e-4 * expected.abs().max(1.0), "{a} {b}: {mean} {expected}");
+            // All modes together are the phase function at any azimuth.
+            let azimuth: f64 = 0.7;
+            let parts = (0..4).map(|m| {
+                let (pa, pb) = (legendre(a, m, 3), legendre(b, m, 3));
+                let one: f64 = (m..4).map(|l| (2 * l + 1) as f64 * chi[l] * pa[l - m] * pb[l - m]).sum();
+                one * if m == 0 { 1.0 } else { 2.0 * libm::cos(m as f64 * azimuth) }
+            });
+            let nu = a * b + ((1.0 - a * a) * (1.0 - b * b)).sqrt() * libm::cos(azimuth);
+            let (found, expected) = (parts.sum::<f64>(), phase(nu));
+            assert!((found - expected).abs() < 1e-12, "{a} {b}: {found} {expected}");
         }
     }
 

@@ -3,6 +3,40 @@
 use super::fresnel::{fresnel, refract};
 use std::f64::consts::PI;
 
+/// A sky of unit irradiance of the surface, by its radiance against the cosine `mu` of the zenith angle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dome {
+    /// The same everywhere, 1/π.
+    Even,
+    /// In proportion to mu: 3 mu / 2π.
+    High,
+    /// In proportion to (1 − mu)²: 6 (1 − mu)² / π.
+    Low,
+}
+
+impl Dome {
+    /// The two parts that skies are made of here: no mixture of them lets less light into water than any sky of
+    /// Earth's air does, which 1 − mu for the second would.
+    pub const PARTS: [Dome; 2] = [Dome::High, Dome::Low];
+
+    /// Radiance, 1/sr.
+    pub fn radiance(self, mu: f64) -> f64 {
+        match self {
+            Dome::Even => 1.0 / PI,
+            Dome::High => 1.5 * mu / PI,
+            Dome::Low => 6.0 * (1.0 - mu) * (1.0 - mu) / PI,
+        }
+    }
+
+    /// Irradiances of both parts that together have the irradiance of a sky and of which as much gets through a
+    /// surface, `passed`; `parts` is what does of each. None is below 0, where the sum is kept.
+    pub fn split(irradiance: f64, passed: f64, parts: [f64; 2]) -> [f64; 2] {
+        let high = (passed - irradiance * parts[1]) / (parts[0] - parts[1]);
+        let high = high.clamp(0.0, irradiance.max(0.0));
+        [high, irradiance.max(0.0) - high]
+    }
+}
+
 /// A surface between air and a medium of refractive index `n`; 1 is no surface at all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
@@ -41,10 +75,11 @@ impl Surface {
         (1.0 - fresnel(mu, self.n)) / (self.n * self.n)
     }
 
-    /// Radiance below the surface of an evenly bright sky of unit irradiance: (1 − F) n² / π inside Snell's
+    /// Radiance below the surface of a sky: (1 − F) n² of that above along the refracted ray inside Snell's
     /// window, 0 outside.
-    pub fn sky_in_water(&self, mu_water: f64) -> f64 {
-        (1.0 - self.reflects_down(mu_water)) * self.n * self.n / PI
+    pub fn sky_in_water(&self, dome: Dome, mu_water: f64) -> f64 {
+        let Some(above) = refract(mu_water, 1.0 / self.n) else { return 0.0 };
+        (1.0 - self.reflects_down(mu_water)) * self.n * self.n * dome.radiance(above)
     }
 }
 
@@ -61,14 +96,34 @@ mod tests {
         assert!((passed - 0.6 * (1.0 - fresnel(0.6, 1.4))).abs() < 1e-15);
         const STEPS: usize = 200_000;
         let step = 1.0 / STEPS as f64;
-        let (mut above, mut below) = (0.0, 0.0);
-        for k in 0..STEPS {
-            let mu = (k as f64 + 0.5) * step;
-            above += 2.0 * mu * (1.0 - fresnel(mu, 1.4)) * step;
-            below += 2.0 * PI * mu * s.sky_in_water(mu) * step;
+        for dome in [Dome::Even, Dome::High, Dome::Low] {
+            let (mut all, mut above, mut below) = (0.0, 0.0, 0.0);
+            for k in 0..STEPS {
+                let mu = (k as f64 + 0.5) * step;
+                let light = 2.0 * PI * mu * dome.radiance(mu) * step;
+                all += light;
+                above += light * (1.0 - fresnel(mu, 1.4));
+                below += 2.0 * PI * mu * s.sky_in_water(dome, mu) * step;
+            }
+            assert!(
+                (all - 1.0).abs() < 1e-9 && (above - below).abs() < 1e-4,
+                "{dome:?} {all} {above} {below}"
+            );
         }
-        assert!((above - below).abs() < 1e-4, "{above} {below}");
         assert_eq!(s.sun_in_water(-0.1), 0.0);
         assert!((Surface { n: 1.0 }.sun_in_water(0.3) - 1.0).abs() < 1e-14);
+    }
+
+    /// A sky that is a mixture of both parts is split into what it was mixed from. Where
+    /// no mixture fits, all of the light is in one part.
+    #[test]
+    fn skies_are_split() {
+        let parts = [0.96, 0.88];
+        for mixed in [[0.3, 0.5], [0.6, 0.1], [1.0, 0.0]] {
+            let split = Dome::split(mixed[0] + mixed[1], parts[0] * mixed[0] + parts[1] * mixed[1], parts);
+            assert!((split[0] - mixed[0]).abs() < 1e-12 && (split[1] - mixed[1]).abs() < 1e-12, "{split:?}");
+        }
+        assert_eq!(Dome::split(2.0, 1.95, parts), [2.0, 0.0]);
+        assert_eq!(Dome::split(2.0, 0.2, parts), [0.0, 2.0]);
     }
 }
