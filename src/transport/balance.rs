@@ -142,8 +142,7 @@ fn absorbed(solution: &Solution, batch: &Batch) -> (Vec<f64>, Vec<f64>) {
                 continue;
             }
             for &(mu_s, sun_weight) in &suns {
-                let light =
-                    solution.sunbeam(batch, r, mu_s) + solution.mean_light(batch, r, mu_s);
+                let light = solution.sunbeam(batch, r, mu_s) + solution.mean_light(batch, r, mu_s);
                 let volume = 2.0 * sun_weight * weight * (high - low) * (r / top) * (r / top);
                 for (w, a) in air.iter_mut().enumerate() {
                     *a += volume * f64::from(absorption[w]) * f64::from(light[w]);

@@ -273,7 +273,10 @@ impl Solution {
             let shell = shells.find(middle);
             let mut columns = vec![0.0; shells.constituents];
             shells.add_path(shell, track.b2, pair[0], pair[1], &mut columns);
-            let depth = depth_of(&columns, &optics.extinction).0.iter().fold(0.0f32, |a, &b| if b > a { b } else { a });
+            let depth = depth_of(&columns, &optics.extinction)
+                .0
+                .iter()
+                .fold(0.0f32, |a, &b| if b > a { b } else { a });
             let arc = (pair[1] - pair[0]) / middle;
             let parts =
                 (f64::from(depth) / STEP_DEPTH).max(arc / LONGEST_ARC).ceil().clamp(1.0, 64.0) as usize;

@@ -74,7 +74,9 @@ impl<'a> Painter<'a> {
         }
         let optics = &batch.optics;
         let scatterers = (0..optics.extinction.len())
-            .map(|c| if optics.scattering[c] == Lanes::ZERO { Lanes::ZERO } else { optics.full_extinction[c] })
+            .map(
+                |c| if optics.scattering[c] == Lanes::ZERO { Lanes::ZERO } else { optics.full_extinction[c] },
+            )
             .collect();
         Painter { solution, batch, axis, groups, scatterers }
     }
@@ -127,7 +129,8 @@ impl<'a> Painter<'a> {
             #[inline(always)]
             || {
                 let attenuation = Attenuation::new(&path, &self.batch.optics.extinction);
-                out.depth = *path.depths(&self.batch.optics.full_extinction).last().expect("a path has a stop");
+                out.depth =
+                    *path.depths(&self.batch.optics.full_extinction).last().expect("a path has a stop");
                 out.scatterers_depth = *path.depths(&self.scatterers).last().expect("a path has a stop");
                 if wanted != Wanted::Single {
                     self.multiple(&path, &attenuation, mu as f32, pairs, out);

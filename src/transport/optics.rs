@@ -39,11 +39,8 @@ impl Optics {
             let lanes = |c| Lanes::from_f64(&(0..count).map(|w| f(c, w)).collect::<Vec<_>>());
             medium.constituents.iter().map(lanes).collect()
         };
-        let passed = |c: &crate::medium::Constituent| match orders {
-            Some(_) => vec![0.0; count],
-            None => unscattered(&c.phase, degree),
-        };
-        let passed: Vec<Vec<f64>> = medium.constituents.iter().map(passed).collect();
+        let passed: Vec<Vec<f64>> =
+            medium.constituents.iter().map(|c| unscattered(&c.phase, degree, orders)).collect();
         let legendre = (medium.constituents.iter().zip(&passed))
             .map(|(c, passed)| {
                 let chi: Vec<Vec<f64>> = c.phase.iter().map(|p| p.legendre(degree)).collect();
@@ -146,7 +143,9 @@ impl PhaseLanes {
         let value = |k: usize| {
             let x = k as f64 / (TABLE_NODES - 1) as f64;
             let nu = 1.0 - 2.0 * x * x;
-            Lanes::from_f64(&chi.iter().map(|chi| series(&chi[..chi.len().min(visible + 1)], nu)).collect::<Vec<_>>())
+            Lanes::from_f64(
+                &chi.iter().map(|chi| series(&chi[..chi.len().min(visible + 1)], nu)).collect::<Vec<_>>(),
+            )
         };
         PhaseLanes::Table((0..TABLE_NODES).map(value).collect())
     }

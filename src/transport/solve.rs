@@ -173,10 +173,7 @@ fn needed_degrees(medium: &Medium, largest: usize, orders: Orders) -> Vec<usize>
     let mut needed = vec![false; largest + 1];
     needed[0] = true;
     for c in medium.constituents.iter().filter(|c| c.scatters()) {
-        let passed = match orders.limit() {
-            Some(_) => vec![0.0; c.phase.len()],
-            None => unscattered(&c.phase, largest),
-        };
+        let passed = unscattered(&c.phase, largest, orders.limit());
         for (phase, f) in c.phase.iter().zip(passed) {
             for (n, chi) in needed.iter_mut().zip(phase.legendre(largest)) {
                 *n |= (chi - f).abs() > 1e-6;
