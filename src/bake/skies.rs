@@ -115,7 +115,7 @@ fn batch_sample(
         }
     }
     for sun in lattice.suns.into_iter().filter(|&s| s > 0.0) {
-        let through = batch.sunlight.at(0, sun as f32);
+        let through = solution.sun_transmittance_of(batch, medium.ground_radius, sun);
         out.push((through, sun));
         out.push((through * through, sun));
     }

@@ -133,7 +133,7 @@ fn absorbed(solution: &Solution, batch: &Batch) -> (Vec<f64>, Vec<f64>) {
     let (mut air, mut ground) = (vec![0.0; count], vec![0.0; count]);
     let suns = suns(solution.geometry.axis.mu_s[0]);
     for &(mu_s, sun_weight) in &suns {
-        let direct = solution.sun_transmittance_of(batch, shells.edges[0], mu_s) * mu_s.max(0.0) as f32;
+        let direct = solution.sunbeam(batch, shells.edges[0], mu_s) * mu_s.max(0.0) as f32;
         let flux = direct + solution.diffuse(batch, mu_s);
         let ring = 2.0 * sun_weight * (shells.edges[0] / top) * (shells.edges[0] / top);
         for w in 0..count {
@@ -149,8 +149,7 @@ fn absorbed(solution: &Solution, batch: &Batch) -> (Vec<f64>, Vec<f64>) {
                 continue;
             }
             for &(mu_s, sun_weight) in &suns {
-                let light =
-                    solution.sun_transmittance_of(batch, r, mu_s) + solution.mean_light(batch, r, mu_s);
+                let light = solution.sunbeam(batch, r, mu_s) + solution.mean_light(batch, r, mu_s);
                 let volume = 2.0 * sun_weight * weight * (high - low) * (r / top) * (r / top);
                 for (w, a) in air.iter_mut().enumerate() {
                     *a += volume * f64::from(absorption[w]) * f64::from(light[w]);

@@ -52,15 +52,22 @@ impl Solution {
         let mut out = Vec::new();
         for batch in &self.batches {
             columns.fill(0.0);
-            let through = self.to_sun(batch, r, mu_s, &mut columns);
+            let through = self.to_sun(r, mu_s, &batch.optics.full_extinction, &mut columns);
             out.extend(through.0[..batch.optics.count].iter().map(|&v| f64::from(v)));
         }
         out
     }
 
     /// [`Solution::sun_transmittance`] of one batch.
-    pub(super) fn sun_transmittance_of(&self, batch: &Batch, r: f64, mu_s: f64) -> Lanes {
-        self.to_sun(batch, r, mu_s, &mut vec![0.0; self.geometry.shells.constituents])
+    pub fn sun_transmittance_of(&self, batch: &Batch, r: f64, mu_s: f64) -> Lanes {
+        let columns = &mut vec![0.0; self.geometry.shells.constituents];
+        self.to_sun(r, mu_s, &batch.optics.full_extinction, columns)
+    }
+
+    /// The same with the light that a forward peak sends on, which the solver counts as unscattered.
+    pub(super) fn sunbeam(&self, batch: &Batch, r: f64, mu_s: f64) -> Lanes {
+        let columns = &mut vec![0.0; self.geometry.shells.constituents];
+        self.to_sun(r, mu_s, &batch.optics.extinction, columns)
     }
 
     /// Light of the ground that arrives at radius `r` along a ray of optical depth `depth` that meets it.
@@ -80,7 +87,7 @@ impl Solution {
     pub(super) fn absorption(&self, batch: &Batch, shell: usize, r: f64) -> Lanes {
         let mut sum = Lanes::ZERO;
         for c in 0..self.geometry.shells.constituents {
-            let only = batch.optics.extinction[c] - batch.optics.scattering[c];
+            let only = batch.optics.full_extinction[c] - batch.optics.scattering[c];
             sum += only * self.geometry.shells.density(shell, c, r) as f32;
         }
         sum
@@ -91,7 +98,10 @@ impl Solution {
     pub fn ground_irradiance(&self, mu_s: f64) -> Vec<f64> {
         let mut out = Vec::new();
         for batch in &self.batches {
-            let flux = self.diffuse(batch, mu_s);
+            let ground = self.geometry.shells.edges[0];
+            // What a forward peak sends on comes with the beam, but not from the sun itself.
+            let peak = self.sunbeam(batch, ground, mu_s) - self.sun_transmittance_of(batch, ground, mu_s);
+            let flux = self.diffuse(batch, mu_s) + peak * mu_s.max(0.0) as f32;
             out.extend(flux.0[..batch.optics.count].iter().map(|&v| f64::from(v)));
         }
         out
@@ -114,51 +124,62 @@ impl Solution {
         let shells = &self.geometry.shells;
         let optics = &batch.optics;
         let track = Track::new(view);
-        let phases: Vec<[Lanes; 3]> =
-            last.iter().map(|&c| self.phase_terms(optics, c, view.nu as f32)).collect();
+        let phases: Vec<Lanes> = last.iter().map(|&c| optics.phase[c].value(view.nu as f32)).collect();
         let mut scattered = Lanes::ZERO;
-        let mut depth = Lanes::ZERO;
+        let (mut depth, mut full) = (Lanes::ZERO, Lanes::ZERO);
         let mut columns = vec![0.0; shells.constituents];
         for (shell, t0, t1) in self.segments(&track, view, optics) {
             for (place, weight) in GAUSS {
                 let t = t0 + (t1 - t0) * place;
                 columns.fill(0.0);
                 shells.add_path(shell, track.b2, t0, t, &mut columns);
-                let through = (depth + depth_of(&columns, optics)) * -1.0;
+                let through = (depth + depth_of(&columns, &optics.extinction)) * -1.0;
                 let source = self.source(batch, view, &track, (shell, t), last, &phases);
                 scattered += through.exp() * source * (weight * (t1 - t0)) as f32;
             }
             columns.fill(0.0);
             shells.add_path(shell, track.b2, t0, t1, &mut columns);
-            depth += depth_of(&columns, optics);
+            depth += depth_of(&columns, &optics.extinction);
+            full += depth_of(&columns, &optics.full_extinction);
         }
-        let transmittance = (depth * -1.0).exp();
-        let ground = if view.hits_ground {
-            transmittance * self.ground_radiance(batch, track.mu_s(view, track.end(shells.edges[0])))
-        } else {
-            Lanes::ZERO
-        };
-        (scattered, ground, transmittance)
+        let transmittance = (full * -1.0).exp();
+        if !view.hits_ground {
+            return (scattered, Lanes::ZERO, transmittance);
+        }
+        let ground = self.ground_radiance(batch, track.mu_s(view, track.end(shells.edges[0])));
+        let beside = (depth * -1.0).exp() - transmittance;
+        scattered += beside * ground * self.share_of_peaks(optics, last);
+        (scattered, transmittance * ground, transmittance)
+    }
+
+    /// The part of what counts as unscattered that some constituents scatter.
+    pub(super) fn share_of_peaks(&self, optics: &Optics, last: &[usize]) -> Lanes {
+        let peak = |c: usize| optics.full_extinction[c] - optics.extinction[c];
+        let sum = |list: &mut dyn Iterator<Item = usize>| list.fold(Lanes::ZERO, |sum, c| sum + peak(c));
+        let (some, all) = (sum(&mut last.iter().copied()), sum(&mut (0..optics.extinction.len())));
+        let mut share = Lanes::ZERO;
+        for w in 0..WIDTH {
+            share[w] = if all[w] > 0.0 { some[w] / all[w] } else { 0.0 };
+        }
+        share
     }
 
     /// Radiance of the ground: albedo/π times direct and diffuse irradiance (Elek & Kmoch Eqs. 8, 11).
     fn ground_radiance(&self, batch: &Batch, mu_s: f64) -> Lanes {
-        let mut columns = vec![0.0; self.geometry.shells.constituents];
-        let direct =
-            self.to_sun(batch, self.geometry.shells.edges[0], mu_s, &mut columns) * mu_s.max(0.0) as f32;
+        let direct = self.sunbeam(batch, self.geometry.shells.edges[0], mu_s) * mu_s.max(0.0) as f32;
         let diffuse = self.diffuse(batch, mu_s);
         batch.optics.albedo * FRAC_1_PI as f32 * (direct + diffuse)
     }
 
-    /// Transmittance from radius `r` to a sun of zenith cosine `mu_s`; 0 behind the planet.
-    /// The columns passed are left in `columns`.
-    fn to_sun(&self, batch: &Batch, r: f64, mu_s: f64, columns: &mut [f64]) -> Lanes {
+    /// Transmittance from radius `r` to a sun of zenith cosine `mu_s` for an extinction a constituent; 0 behind the
+    /// planet. The columns passed are left in `columns`.
+    fn to_sun(&self, r: f64, mu_s: f64, extinction: &[Lanes], columns: &mut [f64]) -> Lanes {
         let shells = &self.geometry.shells;
         if mu_s < horizon_cosine(r, shells.edges[0]) {
             return Lanes::ZERO;
         }
         shells.add_to_top(r, mu_s, columns);
-        (depth_of(columns, &batch.optics) * -1.0).exp()
+        (depth_of(columns, extinction) * -1.0).exp()
     }
 
     /// Light sent along the ray per unit length at one point, 1/m/sr.
@@ -169,18 +190,19 @@ impl Solution {
         track: &Track,
         (shell, t): (usize, f64),
         last: &[usize],
-        phases: &[[Lanes; 3]],
+        phases: &[Lanes],
     ) -> Lanes {
         let r = (track.b2 + t * t).sqrt();
         let mu_s = track.mu_s(view, t);
         let mut sunward = vec![0.0; self.geometry.shells.constituents];
-        let sun = self.to_sun(batch, r, mu_s, &mut sunward);
+        let sun = self.to_sun(r, mu_s, &batch.optics.extinction, &mut sunward);
         let moments = self.moments(batch, r, mu_s);
         let factors = self.angular_factors(t / r, mu_s, view.nu);
         let mut sum = Lanes::ZERO;
-        for (&c, [phase, second, third]) in last.iter().zip(phases) {
+        for (&c, phase) in last.iter().zip(phases) {
+            let peak = batch.optics.peaks[c].as_ref();
             let to_sun = batch.optics.scattering[c] * sunward[c] as f32;
-            let phase = *phase + to_sun * (*second + to_sun * *third * 0.5);
+            let phase = *phase + peak.map_or(Lanes::ZERO, |peak| peak.at(view.nu as f32, to_sun));
             let scattering = batch.optics.scattering[c] * self.geometry.shells.density(shell, c, r) as f32;
             let mut often = Lanes::ZERO;
             for ((&(l, _), factor), moment) in self.basis.terms.iter().zip(&factors).zip(&moments) {
@@ -190,14 +212,6 @@ impl Solution {
             sum += scattering * (sun * phase + often);
         }
         sum
-    }
-
-    /// A constituent's phase function and the coefficients that carry its forward peak to the second and third
-    /// order, at the angle between view and sun.
-    fn phase_terms(&self, optics: &Optics, c: usize, nu: f32) -> [Lanes; 3] {
-        let [second, third] = self.orders.second_and_third();
-        let (c1, c2) = optics.peaks[c].as_ref().map_or((Lanes::ZERO, Lanes::ZERO), |p| p.at(nu));
-        [optics.phase[c].value(nu), c1 * second, c2 * third]
     }
 
     /// P̄_lm(mu) sin^m θ s^min(m,2) cos mφ for every term.
@@ -259,7 +273,10 @@ impl Solution {
             let shell = shells.find(middle);
             let mut columns = vec![0.0; shells.constituents];
             shells.add_path(shell, track.b2, pair[0], pair[1], &mut columns);
-            let depth = depth_of(&columns, optics).0.iter().fold(0.0f32, |a, &b| if b > a { b } else { a });
+            let depth = depth_of(&columns, &optics.extinction)
+                .0
+                .iter()
+                .fold(0.0f32, |a, &b| if b > a { b } else { a });
             let arc = (pair[1] - pair[0]) / middle;
             let parts =
                 (f64::from(depth) / STEP_DEPTH).max(arc / LONGEST_ARC).ceil().clamp(1.0, 64.0) as usize;
@@ -272,9 +289,9 @@ impl Solution {
     }
 }
 
-fn depth_of(columns: &[f64], optics: &Optics) -> Lanes {
+fn depth_of(columns: &[f64], extinction: &[Lanes]) -> Lanes {
     let mut depth = Lanes::ZERO;
-    for (column, e) in columns.iter().zip(&optics.extinction) {
+    for (column, e) in columns.iter().zip(extinction) {
         for w in 0..WIDTH {
             depth[w] += e[w] * *column as f32;
         }

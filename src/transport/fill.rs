@@ -3,12 +3,14 @@
 use super::azimuth::Pairs;
 use super::kernels::{self, Field, FieldGroup, Scratch, SingleGroup};
 use super::moments::Basis;
+use super::operator::interpolate;
 use super::optics::{Optics, PhaseLanes};
 use super::path::Path;
-use super::rays::{Attenuation, Sample};
+use super::rays::{Attenuation, Hit, Sample};
 use super::refined::RefinedAxis;
 use super::solve::{Batch, Solution};
 use crate::lanes::{Lanes, WIDTH};
+use std::f64::consts::FRAC_1_PI;
 
 pub use super::azimuth::Pairs as SunPairs;
 
@@ -28,6 +30,8 @@ pub struct Painter<'a> {
 struct Group {
     /// For a forward peak: T τ towards the sun.
     deeper: Option<Vec<Lanes>>,
+    /// The group's part of what counts as unscattered.
+    share_of_peaks: Lanes,
     basis: Basis,
     field: Field,
     /// First constituent of the group, for its phase function and forward peak.
@@ -70,7 +74,9 @@ impl<'a> Painter<'a> {
         }
         let optics = &batch.optics;
         let scatterers = (0..optics.extinction.len())
-            .map(|c| if optics.scattering[c] == Lanes::ZERO { Lanes::ZERO } else { optics.extinction[c] })
+            .map(
+                |c| if optics.scattering[c] == Lanes::ZERO { Lanes::ZERO } else { optics.full_extinction[c] },
+            )
             .collect();
         Painter { solution, batch, axis, groups, scatterers }
     }
@@ -97,7 +103,7 @@ impl<'a> Painter<'a> {
             let mut sum = Lanes::ZERO;
             let optics = &self.batch.optics;
             let counts = |c: usize| !scatterers_only || optics.scattering[c] != Lanes::ZERO;
-            for (c, e) in optics.extinction.iter().enumerate().filter(|(c, _)| counts(*c)) {
+            for (c, e) in optics.full_extinction.iter().enumerate().filter(|(c, _)| counts(*c)) {
                 sum += *e * columns[c * mus.len() + n] as f32;
             }
             sum
@@ -123,7 +129,8 @@ impl<'a> Painter<'a> {
             #[inline(always)]
             || {
                 let attenuation = Attenuation::new(&path, &self.batch.optics.extinction);
-                out.depth = attenuation.depth;
+                out.depth =
+                    *path.depths(&self.batch.optics.full_extinction).last().expect("a path has a stop");
                 out.scatterers_depth = *path.depths(&self.scatterers).last().expect("a path has a stop");
                 if wanted != Wanted::Single {
                     self.multiple(&path, &attenuation, mu as f32, pairs, out);
@@ -131,6 +138,9 @@ impl<'a> Painter<'a> {
                 let peaks_are_wanted = self.groups.iter().any(|g| g.deeper.is_some());
                 if wanted != Wanted::Multiple || peaks_are_wanted {
                     self.single(&path, &attenuation, mu as f32, pairs, out);
+                }
+                if hits_ground && wanted != Wanted::Single {
+                    self.ground_beside_its_image(&path, &attenuation, pairs, out);
                 }
             },
         );
@@ -187,20 +197,47 @@ impl<'a> Painter<'a> {
     ) {
         let Some(peak) = &optics.peaks[group.first] else { return };
         let phase: &PhaseLanes = &optics.phase[group.first];
-        let [second, third] = self.solution.orders.second_and_third();
         let sine = (1.0 - mu * mu).max(0.0).sqrt();
         for p in 0..pairs.len() {
             let nu = (pairs.mu_s[p] * mu + pairs.across[p] * sine).clamp(-1.0, 1.0);
-            let (c1, c2) = peak.at(nu);
+            let mut depth = Lanes::ZERO;
+            for w in 0..WIDTH {
+                depth[w] = if once[p][w] > 0.0 { deeper[p][w] / once[p][w] } else { 0.0 };
+            }
+            let more = peak.mean(nu, depth) * once[p];
             let value = phase.value(nu);
             let near = nearness(nu);
             for w in 0..WIDTH {
-                let (i, d) = (once[p][w], deeper[p][w]);
-                // d / i is the mean depth towards the sun. Spread evenly, the mean of its square is 4/3 of that².
-                let squares = if i > 0.0 { d * d / i * (4.0 / 3.0) } else { 0.0 };
-                let more = second * c1[w] * d + 0.5 * third * c2[w] * squares;
-                multiple[p][w] += (1.0 - near) * more;
-                once[p][w] = i + if value[w] > 0.0 { near * more / value[w] } else { 0.0 };
+                multiple[p][w] += (1.0 - near) * more[w];
+                once[p][w] += if value[w] > 0.0 { near * more[w] / value[w] } else { 0.0 };
+            }
+        }
+    }
+
+    /// Adds the ground's light that forward peaks send on towards the start: seen through the air without them,
+    /// less what comes straight and is no part of the air's light.
+    #[inline(always)]
+    fn ground_beside_its_image(
+        &self,
+        path: &Path,
+        attenuation: &Attenuation,
+        pairs: &Pairs,
+        out: &mut RayLight,
+    ) {
+        let beside = attenuation.transmittance - (out.depth * -1.0).exp();
+        if beside.0.iter().all(|&v| v <= 0.0) {
+            return;
+        }
+        let (batch, axis) = (self.batch, &self.solution.geometry.axis);
+        let albedo = batch.optics.albedo * FRAC_1_PI as f32;
+        let hit = Hit::at(path, beside);
+        for p in 0..pairs.len() {
+            let mu_s = pairs.mu_s[p] * hit.cos_turn + pairs.across[p] * hit.sin_turn;
+            let cosine = if mu_s > 0.0 { mu_s } else { 0.0 };
+            let flux = batch.sunlight.at(0, mu_s) * cosine + interpolate(&batch.state.ground, axis, mu_s);
+            let light = beside * albedo * flux;
+            for (g, group) in self.groups.iter().enumerate() {
+                out.multiple[g * pairs.len() + p] += light * group.share_of_peaks;
             }
         }
     }
@@ -225,7 +262,8 @@ fn group(solution: &Solution, batch: &Batch, members: &[usize]) -> Group {
         (0..optics.scattering.len()).map(|_| vec![Lanes::splat(1.0); geometry.levels.field.len()]).collect();
     let all = batch.state.field(&solution.basis, optics, &geometry.levels, &shares, &members[..1]);
     let (basis, field) = needed_terms(&solution.basis, optics, members, all);
-    Group { deeper, basis, field, first: members[0], scattering }
+    let share_of_peaks = solution.share_of_peaks(optics, members);
+    Group { deeper, share_of_peaks, basis, field, first: members[0], scattering }
 }
 
 /// Keeps the degrees that the group's phase functions have: an isotropic group needs but one term.

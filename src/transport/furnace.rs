@@ -71,7 +71,7 @@ fn deviations(medium: &Medium) -> [f64; 3] {
     let axis = SunAxis::new(12, -1.0);
     let basis = Basis::new(&[0, 1, 2, 3, 4]);
     let geometry = Geometry::new(levels, shells, axis, 12, basis.len());
-    let optics = Optics::new(medium, 4, 5);
+    let optics = Optics::new(medium, 4, 5, None);
     let sunlight = Sunlight::new(&columns, &geometry.levels, &optics.extinction);
     let operator = Operator::new(&geometry, &optics, &sunlight, &basis, AZIMUTHS);
     let (state, report) = converge(&operator, from_space(&operator, AZIMUTHS), 1e-6);

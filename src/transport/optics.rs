@@ -1,7 +1,7 @@
 //! A medium's coefficients at the wavelengths of one batch, in single precision side by side.
 
 use super::column::Shells;
-use super::forward::ForwardPeak;
+use super::forward::{ForwardPeak, unscattered};
 use crate::lanes::{Lanes, WIDTH};
 use crate::medium::{Medium, PhaseFunction};
 use std::f64::consts::PI;
@@ -11,8 +11,10 @@ use std::f64::consts::PI;
 pub struct Optics {
     /// Wavelengths in use; the lanes past them are empty space over black ground.
     pub count: usize,
-    /// Per constituent, where the density is 1, 1/m.
+    /// Per constituent, where the density is 1, 1/m. `extinction` is without the share of forward peaks that
+    /// counts as unscattered (see [`super::forward`]), `full_extinction` with it.
     pub extinction: Vec<Lanes>,
+    pub full_extinction: Vec<Lanes>,
     pub scattering: Vec<Lanes>,
     pub albedo: Lanes,
     /// Phase function of each constituent.
@@ -21,41 +23,45 @@ pub struct Optics {
     pub smooth_phase: Vec<PhaseLanes>,
     /// What the field misses of each constituent's forward peak.
     pub peaks: Vec<Option<ForwardPeak>>,
-    /// `[constituent][degree]`: Legendre coefficients.
+    /// `[constituent][degree]`: Legendre coefficients, less the share that counts as unscattered.
     pub legendre: Vec<Vec<Lanes>>,
 }
 
 impl Optics {
     /// Coefficients of a medium of at most sixteen wavelengths; Legendre coefficients up to `degree`, and phase
     /// functions cut off beyond degree `visible`: between the directions of a quadrature a narrower peak would be
-    /// missed or counted twice, while its moments up to `degree` are those of the series.
-    pub fn new(medium: &Medium, degree: usize, visible: usize) -> Self {
+    /// missed or counted twice, while its moments up to `degree` are those of the series. `orders`: how many of
+    /// them are summed, none for all.
+    pub fn new(medium: &Medium, degree: usize, visible: usize, orders: Option<usize>) -> Self {
         let count = medium.wavelengths_nm.len();
         assert!(count <= WIDTH, "a batch holds at most {WIDTH} wavelengths");
         let per = |f: &dyn Fn(&crate::medium::Constituent, usize) -> f64| -> Vec<Lanes> {
             let lanes = |c| Lanes::from_f64(&(0..count).map(|w| f(c, w)).collect::<Vec<_>>());
             medium.constituents.iter().map(lanes).collect()
         };
-        let legendre = medium
-            .constituents
-            .iter()
-            .map(|c| {
+        let passed: Vec<Vec<f64>> =
+            medium.constituents.iter().map(|c| unscattered(&c.phase, degree, orders)).collect();
+        let legendre = (medium.constituents.iter().zip(&passed))
+            .map(|(c, passed)| {
                 let chi: Vec<Vec<f64>> = c.phase.iter().map(|p| p.legendre(degree)).collect();
-                (0..=degree).map(|l| Lanes::from_f64(&chi.iter().map(|x| x[l]).collect::<Vec<_>>())).collect()
+                let at = |l: usize| chi.iter().zip(passed).map(|(chi, f)| chi[l] - f).collect::<Vec<_>>();
+                (0..=degree).map(|l| Lanes::from_f64(&at(l))).collect()
             })
             .collect();
+        let less = |(c, f): (&crate::medium::Constituent, &Vec<f64>)| {
+            Lanes::from_f64(&(0..count).map(|w| c.extinction(w) - f[w] * c.scattering[w]).collect::<Vec<_>>())
+        };
         Optics {
             count,
-            extinction: per(&|c, w| c.extinction(w)),
+            extinction: medium.constituents.iter().zip(&passed).map(less).collect(),
+            full_extinction: per(&|c, w| c.extinction(w)),
             scattering: per(&|c, w| c.scattering[w]),
             albedo: Lanes::from_f64(&medium.ground_albedo),
             phase: medium.constituents.iter().map(|c| PhaseLanes::new(&c.phase)).collect(),
-            smooth_phase: medium
-                .constituents
-                .iter()
-                .map(|c| PhaseLanes::cut_off(&c.phase, visible))
+            smooth_phase: (medium.constituents.iter().zip(&passed))
+                .map(|(c, passed)| PhaseLanes::cut_off(&c.phase, passed, degree, visible))
                 .collect(),
-            peaks: medium.constituents.iter().map(|c| ForwardPeak::new(&c.phase, degree)).collect(),
+            peaks: medium.constituents.iter().map(|c| ForwardPeak::new(&c.phase, degree, orders)).collect(),
             legendre,
         }
     }
@@ -123,16 +129,23 @@ impl PhaseLanes {
         PhaseLanes::Other(phase.to_vec())
     }
 
-    /// The Legendre series of phase functions up to a degree; the functions themselves where they end before.
-    fn cut_off(phase: &[PhaseFunction], degree: usize) -> Self {
-        let chi: Vec<Vec<f64>> = phase.iter().map(|p| p.legendre(degree + 1)).collect();
+    /// The Legendre series of phase functions up to degree `visible`, or up to `degree` where a share of them,
+    /// `passed`, counts as unscattered and is left out; the functions themselves where they end before.
+    fn cut_off(phase: &[PhaseFunction], passed: &[f64], degree: usize, visible: usize) -> Self {
+        let mut chi: Vec<Vec<f64>> = phase.iter().map(|p| p.legendre(visible + 1)).collect();
         if chi.iter().all(|chi| chi[3..].iter().all(|c| c.abs() < 1e-9)) {
             return PhaseLanes::new(phase);
+        }
+        for (chi, &f) in chi.iter_mut().zip(passed).filter(|(_, f)| **f > 0.0) {
+            chi.truncate(degree + 1);
+            chi.iter_mut().for_each(|c| *c -= f);
         }
         let value = |k: usize| {
             let x = k as f64 / (TABLE_NODES - 1) as f64;
             let nu = 1.0 - 2.0 * x * x;
-            Lanes::from_f64(&chi.iter().map(|chi| series(&chi[..=degree], nu)).collect::<Vec<_>>())
+            Lanes::from_f64(
+                &chi.iter().map(|chi| series(&chi[..chi.len().min(visible + 1)], nu)).collect::<Vec<_>>(),
+            )
         };
         PhaseLanes::Table((0..TABLE_NODES).map(value).collect())
     }

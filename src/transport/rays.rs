@@ -94,7 +94,6 @@ pub struct Attenuation {
     near: Vec<Lanes>,
     far: Vec<Lanes>,
     /// Of the whole path.
-    pub depth: Lanes,
     pub transmittance: Lanes,
 }
 
@@ -103,7 +102,7 @@ impl Attenuation {
     pub fn new(path: &Path, extinction: &[Lanes]) -> Self {
         let segments = path.stops.len() - 1;
         let (mut near, mut far) = (Vec::with_capacity(segments), Vec::with_capacity(segments));
-        let (mut transmittance, mut total) = (Lanes::splat(1.0), Lanes::ZERO);
+        let mut transmittance = Lanes::splat(1.0);
         for k in 0..segments {
             let depth = sum(path.segment(k), extinction);
             let (n, f, through) = segment_weights(depth);
@@ -111,9 +110,8 @@ impl Attenuation {
             near.push(n * scale);
             far.push(f * scale);
             transmittance = transmittance * through;
-            total += depth;
         }
-        Attenuation { near, far, depth: total, transmittance }
+        Attenuation { near, far, transmittance }
     }
 
     /// What a source of 1 at each stop adds to the radiance at the start, scattered by constituents of

@@ -2,6 +2,7 @@
 
 use super::azimuth::SunAxis;
 use super::column::Shells;
+use super::forward::unscattered;
 use super::krylov::converge;
 pub use super::levels::LevelCounts;
 use super::levels::Levels;
@@ -91,11 +92,11 @@ impl Resolution {
 }
 
 impl Orders {
-    /// Factors of the second and third order: 1 where they are asked for.
-    pub fn second_and_third(&self) -> [f32; 2] {
+    /// How many are summed; none for all.
+    pub fn limit(&self) -> Option<usize> {
         match self {
-            Orders::Converged { .. } => [1.0, 1.0],
-            Orders::First(n) => [2, 3].map(|k| if *n >= k { 1.0 } else { 0.0 }),
+            Orders::Converged { .. } => None,
+            Orders::First(n) => Some(*n),
         }
     }
 }
@@ -144,15 +145,16 @@ impl Solution {
         let shells = Shells::new(medium, &levels);
         let columns = SunColumns::new(&shells, &levels, resolution.sunlight_nodes);
         let axis = SunAxis::new(resolution.sun_nodes, lowest_sun(medium));
-        let basis = Basis::new(&needed_degrees(medium, resolution.degree));
+        let basis = Basis::new(&needed_degrees(medium, resolution.degree, orders));
         let geometry = Geometry::new(levels, shells, axis, resolution.zeniths, basis.len());
         let count = medium.wavelengths_nm.len();
         let mut batches = Vec::new();
         let mut report = Report { applications: 0, residual: Vec::new() };
         for first in (0..count).step_by(WIDTH) {
             let which: Vec<usize> = (first..count.min(first + WIDTH)).collect();
+            let visible = resolution.visible_degree();
             let optics =
-                Optics::new(&medium.at_wavelengths(&which), resolution.degree, resolution.visible_degree());
+                Optics::new(&medium.at_wavelengths(&which), resolution.degree, visible, orders.limit());
             let sunlight = Sunlight::new(&columns, &geometry.levels, &optics.extinction);
             let operator = Operator::new(&geometry, &optics, &sunlight, &basis, resolution.azimuths);
             let (state, one) = sum_orders(&operator, resolution.first_azimuths, orders);
@@ -164,15 +166,17 @@ impl Solution {
     }
 }
 
-/// Degrees at which any scatterer's phase function has something, up to `largest`; always degree 0.
-fn needed_degrees(medium: &Medium, largest: usize) -> Vec<usize> {
+/// Degrees at which any scatterer's phase function has something, up to `largest`; always degree 0. What counts as
+/// unscattered is missing at every degree.
+fn needed_degrees(medium: &Medium, largest: usize, orders: Orders) -> Vec<usize> {
     let largest = largest.min(MOST_DEGREE);
     let mut needed = vec![false; largest + 1];
     needed[0] = true;
     for c in medium.constituents.iter().filter(|c| c.scatters()) {
-        for phase in &c.phase {
+        let passed = unscattered(&c.phase, largest, orders.limit());
+        for (phase, f) in c.phase.iter().zip(passed) {
             for (n, chi) in needed.iter_mut().zip(phase.legendre(largest)) {
-                *n |= chi.abs() > 1e-6;
+                *n |= (chi - f).abs() > 1e-6;
             }
         }
     }
