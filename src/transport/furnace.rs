@@ -42,7 +42,7 @@ fn lossless(height: f64, gas: f64, dust: f64) -> Medium {
 fn from_space(operator: &Operator, azimuths: usize) -> State {
     let geometry = operator.geometry;
     let pairs = Pairs::new(&geometry.axis.mu_s, &midpoint_azimuths(azimuths));
-    let mut state = operator.gather(&pairs, |level, j, _, out| {
+    let mut state = operator.gather(&pairs, |level, j, (): &mut (), out| {
         let (d, path) = &geometry.gathers[level].directions[j];
         if !d.hits_ground {
             out.fill(Attenuation::new(path, &operator.optics.extinction).transmittance);

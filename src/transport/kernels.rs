@@ -4,7 +4,7 @@
 //! Sun positions come in chunks. Where a sample looks things up is found for a chunk at once (loops over plain
 //! arrays, which become vector code); then whole vectors of wavelengths are gathered from there.
 
-use super::azimuth::{CHUNK, PairChunk, Pairs, Places};
+use super::azimuth::{CHUNK, PairChunk, Pairs, Places, SunAxis};
 use super::moments::{Basis, MOST_DEGREE, MOST_TERMS};
 use super::rays::Sample;
 use super::refined::RefinedAxis;
@@ -37,7 +37,7 @@ pub struct FieldGroup<'a> {
 }
 
 /// Orders that a kernel is compiled for: those of the basis, and some more that stay zero.
-fn compiled_modes(basis: &Basis) -> usize {
+pub(super) fn compiled_modes(basis: &Basis) -> usize {
     match basis.modes {
         small @ ..=3 => small,
         4 | 5 => 5,
@@ -89,6 +89,36 @@ pub fn multiple(
                     _ => add_field::<{ MOST_DEGREE + 1 }>(collapsed, &places, &azimuth, weight, out),
                 }
             }
+        }
+    }
+}
+
+/// Adds one sample's light for all pairs, from values at the fine sun nodes with `modes` orders each.
+#[inline(always)]
+pub(super) fn add_sample(
+    sample: &Sample,
+    mu: f32,
+    modes: usize,
+    collapsed: &[Lanes],
+    axis: &SunAxis,
+    pairs: &Pairs,
+    out: &mut [Lanes],
+) {
+    let one = Lanes::splat(1.0);
+    for (c, chunk) in pairs.chunks.iter().enumerate() {
+        let sun = chunk.turned(sample.cos_turn, sample.sin_turn);
+        let places = axis.places(&sun);
+        let azimuth = azimuth_factors(sample, mu, chunk, &sun, modes);
+        let out = &mut out[c * CHUNK..];
+        match modes {
+            1 => add_field::<1>(collapsed, &places, &azimuth, one, out),
+            2 => add_field::<2>(collapsed, &places, &azimuth, one, out),
+            3 => add_field::<3>(collapsed, &places, &azimuth, one, out),
+            5 => add_field::<5>(collapsed, &places, &azimuth, one, out),
+            7 => add_field::<7>(collapsed, &places, &azimuth, one, out),
+            9 => add_field::<9>(collapsed, &places, &azimuth, one, out),
+            11 => add_field::<11>(collapsed, &places, &azimuth, one, out),
+            _ => add_field::<{ MOST_DEGREE + 1 }>(collapsed, &places, &azimuth, one, out),
         }
     }
 }

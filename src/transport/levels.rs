@@ -61,6 +61,13 @@ impl Levels {
     }
 }
 
+impl Levels {
+    /// True in thick air, where the field is looked up on more levels than hold the state.
+    pub fn is_refined(&self) -> bool {
+        self.field.len() > self.coarse.len()
+    }
+}
+
 /// Weights of the state's levels at a level of the field, with the number of the first of them.
 fn between(level: usize, refinement: usize, count: usize) -> (usize, Vec<f32>) {
     let (below, part) = (level / refinement, level % refinement);
