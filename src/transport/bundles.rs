@@ -4,39 +4,34 @@
 //! to anything but height. What its samples add is taken as linear in that turn between a few fixed ones: for each
 //! of these the samples' weights are summed by level of the state and degree, once for all orders, and what is left
 //! to do in an order is one product of weights and state, and one look at sun positions for each turn instead of
-//! one for each sample. Products of all rays of a level are formed together, level by level of the state, so that
-//! the state is read from the processor's caches.
+//! one for each sample. Products of several rays are formed together, level by level of the state, so that what they
+//! share is read from the processor's caches.
 
-use super::azimuth::{Pairs, SunAxis};
+use super::azimuth::Pairs;
 use super::kernels::{self, NEGLIGIBLE};
 use super::levels::Levels;
-use super::moments::{Basis, MOST_TERMS};
-use super::rays::{Ray, Sample};
+use super::moments::{Basis, MOST_DEGREE, MOST_TERMS};
+use super::rays::Sample;
 use super::refined::RefinedAxis;
 use super::state::State;
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, WIDTH};
 
 /// Turns between which samples are interpolated: doubling from the first one to steps of the last, rad. The sun's
-/// height is interpolated over steps of some thousandths of a cosine too.
-const FIRST_TURN: f64 = 1e-3;
-const LONGEST_STEP: f64 = 6.5e-3;
+/// height is interpolated over steps of some thousandths of a cosine too, and rays are sampled every 0.013.
+const FIRST_TURN: f64 = 2e-3;
+const LONGEST_STEP: f64 = 1e-2;
 
 /// Samples of a ray as seen after one turn.
 pub struct Bundle {
     /// Turn and zenith cosine of the ray there; its levels are not used.
     at: Sample,
-    /// First level of the state.
+    /// First level of the state, and the one after the last.
     first: usize,
+    end: usize,
     /// `[level][degree]`: what a moment 1 adds to the radiance at the start, before the polynomial.
     weights: Vec<Lanes>,
     /// P̄_lm at the ray's zenith cosine, per term.
     polynomials: [f32; MOST_TERMS],
-}
-
-impl Bundle {
-    fn levels(&self, degrees: usize) -> std::ops::Range<usize> {
-        self.first..self.first + self.weights.len() / degrees
-    }
 }
 
 /// The degrees of a basis, and for each of its terms the place of its degree among them.
@@ -64,66 +59,106 @@ pub fn turns() -> Vec<f64> {
     turns
 }
 
-/// The bundles of a ray that starts with zenith cosine `mu`. `sources[level of the field][degree]`: source of a
-/// moment 1.
+/// What scatters along a ray.
+pub struct Part<'a> {
+    /// What a source of 1 at each sample adds to the radiance at the start.
+    pub weights: &'a [Lanes],
+    /// Source of a moment 1, `[level of the field][degree]`; one list where it is the same at all levels.
+    pub sources: &'a [Vec<Lanes>],
+}
+
+/// How samples count between two turns.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Between {
+    /// Linear in the turn.
+    Line,
+    /// The same, but by the square of the turn before the first one that is not 0: so light that is scattered a
+    /// thousand times at short distances spreads around the planet as it should, by squares of these distances.
+    Squares,
+}
+
+/// The bundles of a ray's samples that starts with zenith cosine `mu`.
 pub fn bundle(
-    ray: &Ray,
+    samples: &[Sample],
     mu: f64,
+    parts: &[Part],
     levels: &Levels,
     basis: &Basis,
     turns: &[f64],
-    sources: &[Vec<Lanes>],
+    between: Between,
 ) -> Vec<Bundle> {
-    let least = NEGLIGIBLE * ray.weights.iter().map(|w| kernels::largest(*w)).fold(0.0, f32::max);
-    let used = (0..ray.samples.len()).filter(|&k| kernels::largest(ray.weights[k]) > least);
-    let places: Vec<(usize, usize, f32)> = used
+    let degrees = basis.of_order(0).len();
+    let largest = |k: usize| parts.iter().map(|p| kernels::largest(p.weights[k])).fold(0.0, f32::max);
+    let least = NEGLIGIBLE * (0..samples.len()).map(largest).fold(0.0, f32::max);
+    let places: Vec<(usize, usize, f32)> = (0..samples.len())
+        .filter(|&k| largest(k) > least)
         .map(|k| {
-            let s = &ray.samples[k];
-            let turn = libm::atan2(f64::from(s.sin_turn), f64::from(s.cos_turn)).max(0.0);
-            let n = turns.partition_point(|&t| t <= turn).clamp(1, turns.len() - 1) - 1;
-            (k, n, ((turn - turns[n]) / (turns[n + 1] - turns[n])) as f32)
+            let (node, part) = place(&samples[k], turns, between);
+            (k, node, part)
         })
         .collect();
     let last = places.iter().map(|p| p.1 + 1).max().unwrap_or(0);
     let mut out = Vec::new();
     let mut on_field = vec![Lanes::ZERO; levels.field.len()];
     for (node, &turn) in turns.iter().enumerate().take(last + 1) {
-        let (mut low, mut high) = (levels.field.len(), 0);
-        for &(k, n, t) in &places {
-            let part = if n == node { 1.0 - t } else if n + 1 == node { t } else { 0.0 };
-            if part > 0.0 {
-                let s = &ray.samples[k];
-                let level = s.level as usize;
-                on_field[level] += ray.weights[k] * ((1.0 - s.place) * part);
-                on_field[level + 1] += ray.weights[k] * (s.place * part);
-                (low, high) = (low.min(level), high.max(level + 1));
-            }
-        }
-        if low <= high {
-            let (first, weights) = on_state(&on_field[low..=high], low, levels, sources);
+        let share = |n: usize, t: f32| if n == node { 1.0 - t } else { t };
+        let here: Vec<(&Sample, usize, f32)> = (places.iter())
+            .filter(|p| p.1 == node || p.1 + 1 == node)
+            .map(|&(k, n, t)| (&samples[k], k, share(n, t)))
+            .filter(|h| h.2 > 0.0)
+            .collect();
+        let (Some(low), Some(high)) =
+            (here.iter().map(|h| h.0.level).min(), here.iter().map(|h| h.0.level).max())
+        else {
+            continue;
+        };
+        let (low, high) = (low as usize, high as usize + 1);
+        let around = &levels.between[low..=high];
+        let first = around.iter().map(|b| b.0).min().unwrap_or(0);
+        let end = around.iter().map(|b| b.0 + b.1.len()).max().unwrap_or(0);
+        let mut weights = vec![Lanes::ZERO; (end - first) * degrees];
+        for part in parts {
             on_field[low..=high].fill(Lanes::ZERO);
-            out.push(Bundle { at: after(turn, mu), first, weights, polynomials: polynomials(basis, turn, mu) });
+            for (s, k, share) in &here {
+                let level = s.level as usize;
+                on_field[level] += part.weights[*k] * ((1.0 - s.place) * share);
+                on_field[level + 1] += part.weights[*k] * (s.place * share);
+            }
+            add_to_state(&on_field[low..=high], around, part.sources, low, first, degrees, &mut weights);
         }
+        let polynomials = polynomials(basis, turn, mu);
+        out.push(Bundle { at: after(turn, mu), first, end, weights, polynomials });
     }
     out
 }
 
-/// Weights on levels of the field from number `low` on, brought to the state's levels, by degree.
-fn on_state(weights: &[Lanes], low: usize, levels: &Levels, sources: &[Vec<Lanes>]) -> (usize, Vec<Lanes>) {
-    let range = low..low + weights.len();
-    let between = &levels.between[range.clone()];
-    let first = between.iter().map(|b| b.0).min().unwrap_or(0);
-    let end = between.iter().map(|b| b.0 + b.1.len()).max().unwrap_or(0);
-    let degrees = sources[0].len();
-    let mut out = vec![Lanes::ZERO; (end - first) * degrees];
-    for ((weight, (from, parts)), source) in weights.iter().zip(between).zip(&sources[range]) {
+/// The turn before a sample's own and what the one after counts.
+fn place(sample: &Sample, turns: &[f64], between: Between) -> (usize, f32) {
+    let turn = libm::atan2(f64::from(sample.sin_turn), f64::from(sample.cos_turn)).max(0.0);
+    let n = turns.partition_point(|&t| t <= turn).clamp(1, turns.len() - 1) - 1;
+    let part = (turn - turns[n]) / (turns[n + 1] - turns[n]);
+    (n, if n == 0 && between == Between::Squares { part * part } else { part } as f32)
+}
+
+/// Brings weights on levels of the field, from number `low` on, to the state's levels from number `first` on, by
+/// degree.
+fn add_to_state(
+    weights: &[Lanes],
+    around: &[(usize, Vec<f32>)],
+    sources: &[Vec<Lanes>],
+    low: usize,
+    first: usize,
+    degrees: usize,
+    out: &mut [Lanes],
+) {
+    for (n, (weight, (from, parts))) in weights.iter().zip(around).enumerate() {
+        let source = &sources[(low + n).min(sources.len() - 1)];
         for (level, part) in (from - first..).zip(parts) {
             for (out, source) in out[level * degrees..].iter_mut().zip(source) {
                 *out += *weight * *source * *part;
             }
         }
     }
-    (first, out)
 }
 
 /// A ray of zenith cosine `mu` seen after a turn: its zenith angle is smaller by that turn.
@@ -152,9 +187,37 @@ pub fn by_term(state: &State) -> Vec<Lanes> {
     out
 }
 
-/// Sums over levels and degrees for all bundles of one level's rays, `[bundle][order][sun node]`.
-#[inline(always)]
+/// Bundles whose products are formed together: as many as stay in the processor's second cache.
+const TOGETHER: usize = 20;
+
+/// Number of rays, the first of a list, whose products are formed together.
+pub fn together(rays: &[Vec<Bundle>]) -> usize {
+    let mut sum = 0;
+    let few = |r: &&Vec<Bundle>| {
+        sum += r.len();
+        sum <= TOGETHER
+    };
+    rays.iter().take_while(few).count().clamp(1, rays.len())
+}
+
+/// Sums over levels and degrees for all bundles of some rays of a level, `[bundle][order][sun node]`.
 pub fn products(
+    rays: &[Vec<Bundle>],
+    state: &[Lanes],
+    suns: usize,
+    basis: &Basis,
+    degrees: &Degrees,
+    out: &mut Vec<Lanes>,
+) {
+    // By itself, so that it is small enough for the compiler to work on as a whole.
+    crate::isa::run(
+        #[inline(always)]
+        || sum_products(rays, state, suns, basis, degrees, out),
+    )
+}
+
+#[inline(always)]
+fn sum_products(
     rays: &[Vec<Bundle>],
     state: &[Lanes],
     suns: usize,
@@ -170,40 +233,59 @@ pub fn products(
         let terms = basis.of_order(m);
         for (level, moments) in state.chunks_exact(stride).enumerate() {
             for (b, bundle) in bundles.iter().enumerate() {
-                if !bundle.levels(count).contains(&level) {
+                if level < bundle.first || level >= bundle.end {
                     continue;
                 }
                 let weights = &bundle.weights[(level - bundle.first) * count..][..count];
-                let out = &mut out[(b * modes + m) * suns..][..suns];
-                let mut t = terms.start;
-                while t < terms.end {
-                    let n = (terms.end - t).min(5);
-                    let factor = |k: usize| weights[degrees.of_term[t + k]] * bundle.polynomials[t + k];
-                    let rows = &moments[t * suns..][..n * suns];
-                    match n {
-                        1 => add_rows::<1>(rows, factor, suns, out),
-                        2 => add_rows::<2>(rows, factor, suns, out),
-                        3 => add_rows::<3>(rows, factor, suns, out),
-                        4 => add_rows::<4>(rows, factor, suns, out),
-                        _ => add_rows::<5>(rows, factor, suns, out),
-                    }
-                    t += n;
+                let mut factors = [Lanes::ZERO; MOST_DEGREE + 1];
+                for (f, t) in factors.iter_mut().zip(terms.clone()) {
+                    *f = weights[degrees.of_term[t]] * bundle.polynomials[t];
                 }
+                let rows = &moments[terms.start * suns..terms.end * suns];
+                add_rows(rows, &factors, suns, &mut out[(b * modes + m) * suns..][..suns]);
             }
         }
     }
 }
 
+/// Adds rows times factors, up to three at a time.
 #[inline(always)]
-fn add_rows<const N: usize>(rows: &[Lanes], factor: impl Fn(usize) -> Lanes, suns: usize, out: &mut [Lanes]) {
-    let factors: [Lanes; N] = std::array::from_fn(factor);
-    let rows: [&[Lanes]; N] = std::array::from_fn(|k| &rows[k * suns..][..suns]);
-    for (sun, out) in out.iter_mut().enumerate() {
-        let mut sum = *out;
-        for k in 0..N {
-            sum += rows[k][sun] * factors[k];
+fn add_rows(rows: &[Lanes], factors: &[Lanes], suns: usize, out: &mut [Lanes]) {
+    let mut at = 0;
+    while at * suns < rows.len() {
+        let row = |k: usize| &rows[(at + k) * suns..(at + k + 1) * suns];
+        let left = rows.len() / suns - at;
+        if left >= 3 {
+            add_three(row(0), row(1), row(2), &factors[at..at + 3], out);
+            at += 3;
+        } else {
+            add_one(row(0), &factors[at], out);
+            at += 1;
         }
-        *out = sum;
+    }
+}
+
+/// The loops run over plain numbers, which become vector code wherever this is inlined.
+#[inline(always)]
+fn add_three(a: &[Lanes], b: &[Lanes], c: &[Lanes], f: &[Lanes], out: &mut [Lanes]) {
+    let n = out.len();
+    assert!(a.len() == n && b.len() == n && c.len() == n && f.len() == 3);
+    for s in 0..n {
+        for w in 0..WIDTH {
+            let sum = a[s].0[w] * f[0].0[w] + b[s].0[w] * f[1].0[w];
+            out[s].0[w] += sum + c[s].0[w] * f[2].0[w];
+        }
+    }
+}
+
+#[inline(always)]
+fn add_one(a: &[Lanes], f: &Lanes, out: &mut [Lanes]) {
+    let n = out.len();
+    assert!(a.len() == n);
+    for s in 0..n {
+        for w in 0..WIDTH {
+            out[s].0[w] += a[s].0[w] * f.0[w];
+        }
     }
 }
 
@@ -222,12 +304,12 @@ pub fn add(
     mu: f32,
     basis: &Basis,
     axis: &RefinedAxis,
-    suns: &SunAxis,
+    suns: usize,
     pairs: &Pairs,
     room: &mut Room,
     out: &mut [Lanes],
 ) {
-    let (suns, modes) = (suns.len(), basis.modes);
+    let modes = basis.modes;
     let stride = kernels::compiled_modes(basis);
     room.coarse.resize(suns * stride, Lanes::ZERO);
     room.fine.resize(axis.fine.len() * stride, Lanes::ZERO);

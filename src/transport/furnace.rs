@@ -66,7 +66,7 @@ fn deviations(medium: &Medium) -> [f64; 3] {
     const AZIMUTHS: usize = 5;
     let levels = Levels::new(medium, LevelCounts { coarse: 16, refinement: 1, cuts: 2 });
     let shells = Shells::new(medium, &levels);
-    let columns = SunColumns::new(&shells, &levels, 16);
+    let columns = SunColumns::new(&shells, &levels, 16, &[]);
     // The axis reaches to the nadir: this light does not end with the sun's.
     let axis = SunAxis::new(12, -1.0);
     let basis = Basis::new(&[0, 1, 2, 3, 4]);

@@ -301,7 +301,7 @@ pub fn single(
     deeper: &mut [Lanes],
 ) {
     let count = pairs.len();
-    let looks = looks(samples, groups);
+    let looks = looks(samples, sunlight, groups);
     let weights = |g: &SingleGroup| looks.iter().map(|l| g.weights[l.sample] * l.share).collect::<Vec<_>>();
     let mut outputs: Vec<Output> = (groups.iter().zip(once.chunks_exact_mut(count)))
         .map(|(group, out)| Output { weights: weights(group), out })
@@ -342,15 +342,15 @@ struct Output<'a> {
 /// Looks that are summed before anything is stored.
 const BLOCK: usize = 4;
 
-/// All looks of a ray that matter, filled up to whole blocks.
-fn looks(samples: &[Sample], groups: &[SingleGroup]) -> Vec<Look> {
+/// All looks of a ray that matter, where the sun shines, filled up to whole blocks.
+fn looks(samples: &[Sample], sunlight: &Sunlight, groups: &[SingleGroup]) -> Vec<Look> {
     let least = least_weight(groups.iter().map(|g| g.weights.as_slice()));
     let mut looks: Vec<Look> = Vec::with_capacity(samples.len() + BLOCK);
     for (k, s) in samples.iter().enumerate() {
         if groups.iter().any(|g| largest(g.weights[k]) > least) {
             let (cos_turn, sin_turn, level) = (s.cos_turn, s.sin_turn, s.level as usize);
             for (level, share) in [(level, 1.0 - s.place), (level + 1, s.place)] {
-                if share > 0.0 {
+                if share > 0.0 && !sunlight.is_dark(level) {
                     looks.push(Look { sample: k, level, cos_turn, sin_turn, share });
                 }
             }
@@ -379,6 +379,9 @@ fn add_light<const N: usize>(
             let mut places = [Places::NONE; BLOCK];
             for (places, look) in places.iter_mut().zip(looks) {
                 sunlight.place(look.level, &chunk.turned(look.cos_turn, look.sin_turn), places);
+            }
+            if places.iter().all(Places::is_dark) {
+                continue;
             }
             let here = c * CHUNK..pairs.len().min((c + 1) * CHUNK);
             for (k, p) in (0..CHUNK).zip(here) {

@@ -1,7 +1,7 @@
 //! One order of scattering as a linear operator on the state, and the first order that starts it.
 
 use super::azimuth::{Pairs, SunAxis, midpoint_azimuths};
-use super::bundles::{self, Bundle, Degrees, Room};
+use super::bundles::{self, Between, Bundle, Degrees, Part, Room};
 use super::column::Shells;
 use super::kernels::{self, FieldGroup, Scratch, SingleGroup};
 use super::levels::Levels;
@@ -16,6 +16,7 @@ use super::sunlight::Sunlight;
 use crate::lanes::Lanes;
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_1_PI, PI};
+use std::ops::Range;
 
 /// Intervals of the refined sun axis for each of the state's.
 const REFINEMENT: usize = 3;
@@ -115,7 +116,9 @@ impl<'a> Operator<'a> {
         let turns = bundles::turns();
         let level = |(gather, rays): (&Gather, &Vec<Ray>)| {
             let one = |((d, _), ray): (&(Direction, Path), &Ray)| {
-                bundles::bundle(ray, d.mu, levels, self.basis, &turns, &sources)
+                let part = Part { weights: &ray.weights, sources: &sources };
+                let between = Between::Squares;
+                bundles::bundle(&ray.samples, d.mu, &[part], levels, self.basis, &turns, between)
             };
             gather.directions.iter().zip(rays).map(one).collect()
         };
@@ -200,17 +203,18 @@ impl<'a> Operator<'a> {
         self.gather(
             &self.pairs,
             #[inline(always)]
-            |level, j, (products, begin, room): &mut (Vec<Lanes>, usize, Room), out| {
+            |level, j, (products, range, room): &mut (Vec<Lanes>, Range<usize>, Room), out| {
                 let rays = &bundles[level];
-                if j == 0 {
+                if j == 0 || j == range.end {
+                    *range = j..j + bundles::together(&rays[j..]);
+                    let rays = &rays[range.clone()];
                     bundles::products(rays, &moments, state.suns, self.basis, &self.degrees, products);
-                    *begin = 0;
                 }
+                let begin: usize = rays[range.start..j].iter().map(Vec::len).sum();
+                let own = &products[begin * size..][..rays[j].len() * size];
                 let mu = self.geometry.gathers[level].directions[j].0.mu as f32;
-                let (axis, suns) = (&self.geometry.refined, &self.geometry.axis);
-                let own = &products[*begin * size..][..rays[j].len() * size];
+                let (axis, suns) = (&self.geometry.refined, state.suns);
                 bundles::add(&rays[j], own, mu, self.basis, axis, suns, &self.pairs, room, out);
-                *begin += rays[j].len();
                 self.add_ground(&self.rays[level][j], state, out);
             },
         )
