@@ -241,3 +241,52 @@ impl LevelAxis {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::medium::{Constituent, DensityProfile, Medium, PhaseFunction, Role};
+    use crate::transport::levels::LevelCounts;
+
+    /// Straight lines between nodes a quarter of a unit of optical depth apart are 0.8 % off at most (a step squared
+    /// over 8). Even nodes down to the horizon would lie 0.7 of the air's height apart, at a depth of 21.
+    #[test]
+    fn sunlight_in_a_thick_layer_is_the_exponential() {
+        let layer = Constituent {
+            name: "x".into(),
+            role: Role::Gas,
+            density: DensityProfile::Exponential { scale_height: 1e9 },
+            scattering: vec![3e-3],
+            absorption: vec![0.0],
+            similarity_g: vec![0.0],
+            phase: vec![PhaseFunction::Isotropic],
+        };
+        let medium = Medium {
+            ground_radius: 1e8,
+            top_radius: 1e8 + 1e4,
+            wavelengths_nm: vec![550.0],
+            ground_albedo: vec![0.3],
+            constituents: vec![layer],
+        };
+        let levels = Levels::new(&medium, LevelCounts { coarse: 20, refinement: 2, cuts: 1 });
+        let shells = Shells::new(&medium, &levels);
+        let columns = SunColumns::new(&shells, &levels, 192, &[3e-3]);
+        let sunlight = Sunlight::new(&columns, &levels, &[Lanes::splat(3e-3)]);
+        let mut lit = 0;
+        for (level, &r) in levels.fine.iter().enumerate() {
+            for mu_s in [1.0, 0.83, 0.6, 0.31, 0.1] {
+                let mut column = [0.0];
+                shells.add_to_top(r, mu_s, &mut column);
+                let exact = libm::exp(-3e-3 * column[0]);
+                let found = f64::from(sunlight.at(level, mu_s as f32)[0]);
+                if exact > 1e-6 {
+                    assert!((found / exact - 1.0).abs() < 0.01, "{level} {mu_s}: {found} {exact}");
+                    lit += 1;
+                } else {
+                    assert!(found < 2e-6, "{level} {mu_s}: {found} {exact}");
+                }
+            }
+        }
+        assert!(lit > 50, "{lit}");
+    }
+}
