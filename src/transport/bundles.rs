@@ -13,8 +13,7 @@ use super::levels::Levels;
 use super::moments::{Basis, MOST_DEGREE, MOST_TERMS};
 use super::rays::Sample;
 use super::refined::RefinedAxis;
-use super::state::State;
-use crate::lanes::{Lanes, WIDTH};
+use crate::lanes::Lanes;
 
 /// Turns between which samples are interpolated: doubling from the first one to steps of the last, rad. The sun's
 /// height is interpolated over steps of some thousandths of a cosine too, and rays are sampled every 0.013.
@@ -175,18 +174,6 @@ fn polynomials(basis: &Basis, turn: f64, mu: f64) -> [f32; MOST_TERMS] {
     out
 }
 
-/// A state's moments as `[level][term][sun node]`.
-pub fn by_term(state: &State) -> Vec<Lanes> {
-    let (suns, terms) = (state.suns, state.terms);
-    let mut out = vec![Lanes::ZERO; state.moments.len()];
-    for (from, to) in state.moments.chunks_exact(suns * terms).zip(out.chunks_exact_mut(suns * terms)) {
-        for (t, row) in to.chunks_exact_mut(suns).enumerate() {
-            row.iter_mut().zip(from[t..].iter().step_by(terms)).for_each(|(o, m)| *o = *m);
-        }
-    }
-    out
-}
-
 /// Bundles whose products are formed together: as many as stay in the processor's second cache.
 const TOGETHER: usize = 20;
 
@@ -200,7 +187,8 @@ pub fn together(rays: &[Vec<Bundle>]) -> usize {
     rays.iter().take_while(few).count().clamp(1, rays.len())
 }
 
-/// Sums over levels and degrees for all bundles of some rays of a level, `[bundle][order][sun node]`.
+/// Sums over levels and degrees for all bundles of some rays of a level, `[bundle][order][sun node]`, of a state's
+/// moments, `[level][sun node][term]`.
 pub fn products(
     rays: &[Vec<Bundle>],
     state: &[Lanes],
@@ -241,50 +229,16 @@ fn sum_products(
                 for (f, t) in factors.iter_mut().zip(terms.clone()) {
                     *f = weights[degrees.of_term[t]] * bundle.polynomials[t];
                 }
-                let rows = &moments[terms.start * suns..terms.end * suns];
-                add_rows(rows, &factors, suns, &mut out[(b * modes + m) * suns..][..suns]);
+                let out = &mut out[(b * modes + m) * suns..][..suns];
+                for (node, out) in moments.chunks_exact(basis.len()).zip(out) {
+                    // One value at a time: loops over several nodes at once the compiler turns into shuffles.
+                    let mut sum = *out;
+                    for (moment, factor) in node[terms.clone()].iter().zip(&factors) {
+                        sum += *moment * *factor;
+                    }
+                    *out = sum;
+                }
             }
-        }
-    }
-}
-
-/// Adds rows times factors, up to three at a time.
-#[inline(always)]
-fn add_rows(rows: &[Lanes], factors: &[Lanes], suns: usize, out: &mut [Lanes]) {
-    let mut at = 0;
-    while at * suns < rows.len() {
-        let row = |k: usize| &rows[(at + k) * suns..(at + k + 1) * suns];
-        let left = rows.len() / suns - at;
-        if left >= 3 {
-            add_three(row(0), row(1), row(2), &factors[at..at + 3], out);
-            at += 3;
-        } else {
-            add_one(row(0), &factors[at], out);
-            at += 1;
-        }
-    }
-}
-
-/// The loops run over plain numbers, which become vector code wherever this is inlined.
-#[inline(always)]
-fn add_three(a: &[Lanes], b: &[Lanes], c: &[Lanes], f: &[Lanes], out: &mut [Lanes]) {
-    let n = out.len();
-    assert!(a.len() == n && b.len() == n && c.len() == n && f.len() == 3);
-    for s in 0..n {
-        for w in 0..WIDTH {
-            let sum = a[s].0[w] * f[0].0[w] + b[s].0[w] * f[1].0[w];
-            out[s].0[w] += sum + c[s].0[w] * f[2].0[w];
-        }
-    }
-}
-
-#[inline(always)]
-fn add_one(a: &[Lanes], f: &Lanes, out: &mut [Lanes]) {
-    let n = out.len();
-    assert!(a.len() == n);
-    for s in 0..n {
-        for w in 0..WIDTH {
-            out[s].0[w] += a[s].0[w] * f.0[w];
         }
     }
 }

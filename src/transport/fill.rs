@@ -32,8 +32,6 @@ pub struct Painter<'a> {
 }
 
 struct Thick {
-    /// `[level][term][sun node]`
-    moments: Vec<Lanes>,
     degrees: Degrees,
     turns: Vec<f64>,
     /// `[group][0][degree]`: source of a moment 1.
@@ -205,8 +203,9 @@ impl<'a> Painter<'a> {
         let (turns, between) = (&thick.turns, Between::Line);
         let rays = [bundles::bundle(samples, f64::from(mu), &parts, &geometry.levels, basis, turns, between)];
         let RayLight { products, room, multiple, .. } = out;
-        let suns = self.batch.state.suns;
-        bundles::products(&rays, &thick.moments, suns, basis, &thick.degrees, products);
+        let state = &self.batch.state;
+        let suns = state.suns;
+        bundles::products(&rays, &state.moments, suns, basis, &thick.degrees, products);
         let light = &mut multiple[first * pairs.len()..][..pairs.len()];
         bundles::add(&rays[0], products, mu, basis, &self.axis, suns, pairs, room, light);
     }
@@ -281,7 +280,6 @@ impl Thick {
             vec![zeroth.iter().map(|&t| all[t]).collect()]
         };
         Thick {
-            moments: if groups.is_empty() { Vec::new() } else { bundles::by_term(&batch.state) },
             degrees: Degrees::new(basis),
             turns: bundles::turns(),
             sources: groups.iter().map(sources).collect(),

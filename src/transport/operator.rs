@@ -198,7 +198,7 @@ impl<'a> Operator<'a> {
 
     /// [`Operator::apply`] in thick air.
     fn apply_bundles(&self, bundles: &[Vec<Vec<Bundle>>], state: &State) -> State {
-        let moments = bundles::by_term(state);
+        let moments = &state.moments;
         let size = state.suns * self.basis.modes;
         self.gather(
             &self.pairs,
@@ -208,7 +208,7 @@ impl<'a> Operator<'a> {
                 if j == 0 || j == range.end {
                     *range = j..j + bundles::together(&rays[j..]);
                     let rays = &rays[range.clone()];
-                    bundles::products(rays, &moments, state.suns, self.basis, &self.degrees, products);
+                    bundles::products(rays, moments, state.suns, self.basis, &self.degrees, products);
                 }
                 let begin: usize = rays[range.start..j].iter().map(Vec::len).sum();
                 let own = &products[begin * size..][..rays[j].len() * size];
