@@ -135,7 +135,7 @@ fn fill(
         if four.is_empty() || count == 0 {
             continue;
         }
-        let painter = Painter::new(solution, batch, groups);
+        let painter = Painter::new(solution, batch, groups).together();
         texels.par_chunks_mut(count * pairs.len()).enumerate().for_each_init(
             RayLight::default,
             |light, (ray, out)| {

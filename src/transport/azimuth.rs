@@ -32,6 +32,17 @@ pub struct Places {
 
 impl Places {
     pub const NONE: Places = Places { nodes: [0; CHUNK], low: [0.0; CHUNK], high: [0.0; CHUNK] };
+
+    /// True where nothing counts.
+    #[inline(always)]
+    pub fn is_dark(&self) -> bool {
+        let mut largest = 0.0;
+        for k in 0..CHUNK {
+            let sum = self.low[k] + self.high[k];
+            largest = if sum > largest { sum } else { largest };
+        }
+        largest == 0.0
+    }
 }
 
 /// Sun zenith cosines and relative azimuths; every combination is a pair.

@@ -70,7 +70,7 @@ fn scattered_out(solution: &Solution, batch: &Batch, medium: &Medium) -> Vec<f64
         .filter(|&c| medium.constituents[c].scatters())
         .map(|c| vec![c])
         .collect();
-    let painter = Painter::new(solution, batch, &groups);
+    let painter = Painter::new(solution, batch, &groups).together();
     let suns = suns(lowest_sun(medium));
     let cosines: Vec<f64> = suns.iter().map(|s| s.0).collect();
     let pairs = SunPairs::new(&cosines, &midpoint_azimuths(AZIMUTHS));

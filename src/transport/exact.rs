@@ -27,6 +27,8 @@ pub struct Radiance {
 
 const GAUSS: [(f64, f64); 3] =
     [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+/// Optical depth beyond which nothing is seen: 1e-11 is left.
+const OPAQUE: f32 = 25.0;
 /// Optical depth along the ray that one Gauss interval may span.
 const STEP_DEPTH: f64 = 0.7;
 
@@ -129,7 +131,8 @@ impl Solution {
         let (mut depth, mut full) = (Lanes::ZERO, Lanes::ZERO);
         let mut columns = vec![0.0; shells.constituents];
         for (shell, t0, t1) in self.segments(&track, view, optics) {
-            for (place, weight) in GAUSS {
+            let dark = depth.0[..optics.count].iter().all(|&d| d > OPAQUE);
+            for (place, weight) in GAUSS.iter().filter(|_| !dark) {
                 let t = t0 + (t1 - t0) * place;
                 columns.fill(0.0);
                 shells.add_path(shell, track.b2, t0, t, &mut columns);

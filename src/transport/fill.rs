@@ -1,6 +1,7 @@
 //! Light along one ray for many sun positions at once: what tables are filled from.
 
 use super::azimuth::Pairs;
+use super::bundles::{self, Between, Degrees, Part};
 use super::kernels::{self, Field, FieldGroup, Scratch, SingleGroup};
 use super::moments::Basis;
 use super::operator::interpolate;
@@ -9,6 +10,7 @@ use super::path::Path;
 use super::rays::{Attenuation, Hit, Sample};
 use super::refined::RefinedAxis;
 use super::solve::{Batch, Solution};
+use super::state::source_factors;
 use crate::lanes::{Lanes, WIDTH};
 use std::f64::consts::FRAC_1_PI;
 
@@ -25,6 +27,17 @@ pub struct Painter<'a> {
     groups: Vec<Group>,
     /// Extinction per constituent, 0 for those that only absorb.
     scatterers: Vec<Lanes>,
+    /// In thick air: what bundles of samples are multiplied with.
+    thick: Option<Thick>,
+    /// All groups' light scattered more than once is added up in the first's place.
+    together: bool,
+}
+
+struct Thick {
+    degrees: Degrees,
+    turns: Vec<f64>,
+    /// `[group][0][degree]`: source of a moment 1.
+    sources: Vec<Vec<Vec<Lanes>>>,
 }
 
 struct Group {
@@ -59,6 +72,8 @@ pub struct RayLight {
     pub depth: Lanes,
     pub scatterers_depth: Lanes,
     scratch: Scratch,
+    products: Vec<Lanes>,
+    room: bundles::Room,
     deeper: Vec<Lanes>,
 }
 
@@ -70,7 +85,9 @@ impl<'a> Painter<'a> {
         let terms = groups.iter().map(|g| g.basis.len()).max().unwrap_or(0);
         let axis = RefinedAxis::new(&solution.geometry.axis, REFINEMENT, terms);
         for group in &mut groups {
-            group.field = axis.prepare(std::mem::take(&mut group.field));
+            if !group.field.values.is_empty() {
+                group.field = axis.prepare(std::mem::take(&mut group.field));
+            }
         }
         let optics = &batch.optics;
         let scatterers = (0..optics.extinction.len())
@@ -78,7 +95,13 @@ impl<'a> Painter<'a> {
                 |c| if optics.scattering[c] == Lanes::ZERO { Lanes::ZERO } else { optics.full_extinction[c] },
             )
             .collect();
-        Painter { solution, batch, axis, groups, scatterers }
+        let thick = solution.geometry.levels.is_refined().then(|| Thick::new(solution, batch, &groups));
+        Painter { solution, batch, axis, groups, scatterers, thick, together: false }
+    }
+
+    /// The same, but light scattered more than once counts for the first group, whoever scatters it.
+    pub fn together(self) -> Self {
+        Painter { together: true, ..self }
     }
 
     /// Optical depths of rays from radius `r`, to the ground or to the top: `mus` fall from the zenith (or, to
@@ -151,10 +174,50 @@ impl<'a> Painter<'a> {
         let samples = Sample::all(path, &self.solution.geometry.levels, true);
         let weights = |g: &Group| attenuation.field_weights(path, &g.scattering);
         let weights: Vec<Vec<Lanes>> = self.groups.iter().map(weights).collect();
+        if let Some(thick) = &self.thick {
+            let each = if self.together { self.groups.len().max(1) } else { 1 };
+            for (g, weights) in weights.chunks(each).enumerate() {
+                self.multiple_in_bundles(thick, g * each, weights, &samples, mu, pairs, out);
+            }
+            return;
+        }
         let groups: Vec<FieldGroup> = (self.groups.iter().zip(&weights))
             .map(|(g, weights)| FieldGroup { field: &g.field, basis: &g.basis, weights })
             .collect();
         kernels::multiple(&samples, mu, &groups, &self.axis, pairs, &mut out.scratch, &mut out.multiple);
+        if self.together {
+            let (first, rest) = out.multiple.split_at_mut(pairs.len());
+            for group in rest.chunks_exact_mut(pairs.len()) {
+                first.iter_mut().zip(group.iter()).for_each(|(f, g)| *f += *g);
+                group.fill(Lanes::ZERO);
+            }
+        }
+    }
+
+    /// Light of some groups, from number `first` on, added up in the place of the first.
+    #[inline(always)]
+    fn multiple_in_bundles(
+        &self,
+        thick: &Thick,
+        first: usize,
+        weights: &[Vec<Lanes>],
+        samples: &[Sample],
+        mu: f32,
+        pairs: &Pairs,
+        out: &mut RayLight,
+    ) {
+        let Solution { basis, geometry, .. } = self.solution;
+        let parts: Vec<Part> = (weights.iter().zip(&thick.sources[first..]))
+            .map(|(weights, sources)| Part { weights, sources })
+            .collect();
+        let (turns, between) = (&thick.turns, Between::Line);
+        let rays = [bundles::bundle(samples, f64::from(mu), &parts, &geometry.levels, basis, turns, between)];
+        let RayLight { products, room, multiple, .. } = out;
+        let state = &self.batch.state;
+        let suns = state.suns;
+        bundles::products(&rays, &state.moments, suns, basis, &thick.degrees, products);
+        let light = &mut multiple[first * pairs.len()..][..pairs.len()];
+        bundles::add(&rays[0], products, mu, basis, &self.axis, suns, pairs, room, light);
     }
 
     #[inline(always)]
@@ -243,6 +306,24 @@ impl<'a> Painter<'a> {
     }
 }
 
+impl Thick {
+    fn new(solution: &Solution, batch: &Batch, groups: &[Group]) -> Self {
+        let Solution { basis, .. } = solution;
+        let zeroth: Vec<usize> = basis.of_order(0).collect();
+        let one = [Lanes::splat(1.0)];
+        let sources = |g: &Group| {
+            let shares: Vec<Vec<Lanes>> = batch.optics.scattering.iter().map(|_| one.to_vec()).collect();
+            let all = source_factors(basis, &batch.optics, &shares, &[g.first], 0);
+            vec![zeroth.iter().map(|&t| all[t]).collect()]
+        };
+        Thick {
+            degrees: Degrees::new(basis),
+            turns: bundles::turns(),
+            sources: groups.iter().map(sources).collect(),
+        }
+    }
+}
+
 /// 1 near the forward direction, 0 from about a right angle on.
 #[inline(always)]
 fn nearness(nu: f32) -> f32 {
@@ -257,12 +338,17 @@ fn group(solution: &Solution, batch: &Batch, members: &[usize]) -> Group {
     let deeper = optics.peaks[members[0]]
         .is_some()
         .then(|| batch.sunlight.times_depth(&solution.columns, &scattering));
+    let share_of_peaks = solution.share_of_peaks(optics, members);
+    if geometry.levels.is_refined() {
+        // Bundles take the state as it is.
+        let (basis, field) = (solution.basis.clone(), Field::default());
+        return Group { deeper, share_of_peaks, basis, field, first: members[0], scattering };
+    }
     // The shares are in the weights of the rays; those of the group's first constituent stand for its phase.
     let shares: Vec<Vec<Lanes>> =
         (0..optics.scattering.len()).map(|_| vec![Lanes::splat(1.0); geometry.levels.field.len()]).collect();
     let all = batch.state.field(&solution.basis, optics, &geometry.levels, &shares, &members[..1]);
     let (basis, field) = needed_terms(&solution.basis, optics, members, all);
-    let share_of_peaks = solution.share_of_peaks(optics, members);
     Group { deeper, share_of_peaks, basis, field, first: members[0], scattering }
 }
 

@@ -42,7 +42,7 @@ fn lossless(height: f64, gas: f64, dust: f64) -> Medium {
 fn from_space(operator: &Operator, azimuths: usize) -> State {
     let geometry = operator.geometry;
     let pairs = Pairs::new(&geometry.axis.mu_s, &midpoint_azimuths(azimuths));
-    let mut state = operator.gather(&pairs, |level, j, _, out| {
+    let mut state = operator.gather(&pairs, |level, j, (): &mut (), out| {
         let (d, path) = &geometry.gathers[level].directions[j];
         if !d.hits_ground {
             out.fill(Attenuation::new(path, &operator.optics.extinction).transmittance);
@@ -62,11 +62,11 @@ fn from_space(operator: &Operator, azimuths: usize) -> State {
 }
 
 /// Largest deviations from the furnace's answer: of M0 / 4π, of the other moments, of ground irradiance / π.
-fn deviations(medium: &Medium) -> [f64; 3] {
+fn deviations(medium: &Medium, refinement: usize) -> [f64; 3] {
     const AZIMUTHS: usize = 5;
-    let levels = Levels::new(medium, LevelCounts { coarse: 16, refinement: 1, cuts: 2 });
+    let levels = Levels::new(medium, LevelCounts { coarse: 16, refinement, cuts: 2 });
     let shells = Shells::new(medium, &levels);
-    let columns = SunColumns::new(&shells, &levels, 16);
+    let columns = SunColumns::new(&shells, &levels, 16, &[]);
     // The axis reaches to the nadir: this light does not end with the sun's.
     let axis = SunAxis::new(12, -1.0);
     let basis = Basis::new(&[0, 1, 2, 3, 4]);
@@ -92,11 +92,12 @@ fn deviations(medium: &Medium) -> [f64; 3] {
 /// Radiance 1 from all of space on a planet that absorbs nothing is radiance 1 everywhere, in every direction: mean
 /// light 4π, no moment beside it, and irradiance π of the ground, whatever the optical depth. Weights along a ray
 /// sum to 1 − T and those of directions to 4π, so only single precision (6e-8 an operation, a thousand terms a moment)
-/// and the last step of the iteration are left.
+/// and the last step of the iteration are left. With more levels of the field than of the state, rays take their
+/// samples in bundles.
 #[test]
 fn white_furnace_is_white() {
-    for (gas, dust) in [(1e-5, 1e-5), (8e-5, 1e-4)] {
-        let [mean, others, flux] = deviations(&lossless(80e3, gas, dust));
+    for (gas, dust, refinement) in [(1e-5, 1e-5, 1), (8e-5, 1e-4, 1), (8e-5, 1e-4, 3)] {
+        let [mean, others, flux] = deviations(&lossless(80e3, gas, dust), refinement);
         println!("furnace {gas} {dust}: {mean:.1e} {others:.1e} {flux:.1e}");
         assert!(mean < 1e-5 && others < 1e-5 && flux < 1e-5, "{mean:.1e} {others:.1e} {flux:.1e}");
     }

@@ -4,7 +4,7 @@
 //! Sun positions come in chunks. Where a sample looks things up is found for a chunk at once (loops over plain
 //! arrays, which become vector code); then whole vectors of wavelengths are gathered from there.
 
-use super::azimuth::{CHUNK, PairChunk, Pairs, Places};
+use super::azimuth::{CHUNK, PairChunk, Pairs, Places, SunAxis};
 use super::moments::{Basis, MOST_DEGREE, MOST_TERMS};
 use super::rays::Sample;
 use super::refined::RefinedAxis;
@@ -37,7 +37,7 @@ pub struct FieldGroup<'a> {
 }
 
 /// Orders that a kernel is compiled for: those of the basis, and some more that stay zero.
-fn compiled_modes(basis: &Basis) -> usize {
+pub(super) fn compiled_modes(basis: &Basis) -> usize {
     match basis.modes {
         small @ ..=3 => small,
         4 | 5 => 5,
@@ -89,6 +89,36 @@ pub fn multiple(
                     _ => add_field::<{ MOST_DEGREE + 1 }>(collapsed, &places, &azimuth, weight, out),
                 }
             }
+        }
+    }
+}
+
+/// Adds one sample's light for all pairs, from values at the fine sun nodes with `modes` orders each.
+#[inline(always)]
+pub(super) fn add_sample(
+    sample: &Sample,
+    mu: f32,
+    modes: usize,
+    collapsed: &[Lanes],
+    axis: &SunAxis,
+    pairs: &Pairs,
+    out: &mut [Lanes],
+) {
+    let one = Lanes::splat(1.0);
+    for (c, chunk) in pairs.chunks.iter().enumerate() {
+        let sun = chunk.turned(sample.cos_turn, sample.sin_turn);
+        let places = axis.places(&sun);
+        let azimuth = azimuth_factors(sample, mu, chunk, &sun, modes);
+        let out = &mut out[c * CHUNK..];
+        match modes {
+            1 => add_field::<1>(collapsed, &places, &azimuth, one, out),
+            2 => add_field::<2>(collapsed, &places, &azimuth, one, out),
+            3 => add_field::<3>(collapsed, &places, &azimuth, one, out),
+            5 => add_field::<5>(collapsed, &places, &azimuth, one, out),
+            7 => add_field::<7>(collapsed, &places, &azimuth, one, out),
+            9 => add_field::<9>(collapsed, &places, &azimuth, one, out),
+            11 => add_field::<11>(collapsed, &places, &azimuth, one, out),
+            _ => add_field::<{ MOST_DEGREE + 1 }>(collapsed, &places, &azimuth, one, out),
         }
     }
 }
@@ -271,7 +301,7 @@ pub fn single(
     deeper: &mut [Lanes],
 ) {
     let count = pairs.len();
-    let looks = looks(samples, groups);
+    let looks = looks(samples, sunlight, groups);
     let weights = |g: &SingleGroup| looks.iter().map(|l| g.weights[l.sample] * l.share).collect::<Vec<_>>();
     let mut outputs: Vec<Output> = (groups.iter().zip(once.chunks_exact_mut(count)))
         .map(|(group, out)| Output { weights: weights(group), out })
@@ -312,15 +342,15 @@ struct Output<'a> {
 /// Looks that are summed before anything is stored.
 const BLOCK: usize = 4;
 
-/// All looks of a ray that matter, filled up to whole blocks.
-fn looks(samples: &[Sample], groups: &[SingleGroup]) -> Vec<Look> {
+/// All looks of a ray that matter, where the sun shines, filled up to whole blocks.
+fn looks(samples: &[Sample], sunlight: &Sunlight, groups: &[SingleGroup]) -> Vec<Look> {
     let least = least_weight(groups.iter().map(|g| g.weights.as_slice()));
     let mut looks: Vec<Look> = Vec::with_capacity(samples.len() + BLOCK);
     for (k, s) in samples.iter().enumerate() {
         if groups.iter().any(|g| largest(g.weights[k]) > least) {
             let (cos_turn, sin_turn, level) = (s.cos_turn, s.sin_turn, s.level as usize);
             for (level, share) in [(level, 1.0 - s.place), (level + 1, s.place)] {
-                if share > 0.0 {
+                if share > 0.0 && !sunlight.is_dark(level) {
                     looks.push(Look { sample: k, level, cos_turn, sin_turn, share });
                 }
             }
@@ -349,6 +379,9 @@ fn add_light<const N: usize>(
             let mut places = [Places::NONE; BLOCK];
             for (places, look) in places.iter_mut().zip(looks) {
                 sunlight.place(look.level, &chunk.turned(look.cos_turn, look.sin_turn), places);
+            }
+            if places.iter().all(Places::is_dark) {
+                continue;
             }
             let here = c * CHUNK..pairs.len().min((c + 1) * CHUNK);
             for (k, p) in (0..CHUNK).zip(here) {

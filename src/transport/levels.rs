@@ -61,6 +61,13 @@ impl Levels {
     }
 }
 
+impl Levels {
+    /// True in thick air, where the field is looked up on more levels than hold the state.
+    pub fn is_refined(&self) -> bool {
+        self.field.len() > self.coarse.len()
+    }
+}
+
 /// Weights of the state's levels at a level of the field, with the number of the first of them.
 fn between(level: usize, refinement: usize, count: usize) -> (usize, Vec<f32>) {
     let (below, part) = (level / refinement, level % refinement);
@@ -94,34 +101,58 @@ fn spacing(medium: &Medium) -> Vec<f64> {
             }
         }
     }
-    let (depth, largest) = mean_depth(medium, middle, dz);
+    let Depths { shares: depth, skin, largest } = depths(medium, middle, dz);
     // In thick air the levels follow optical depth: a share that grows with it, up to nine tenths.
     let share = 0.2 + 0.7 * largest / (largest + 10.0);
+    let skin_share = SKIN * ((largest - THIN) / THIN).clamp(0.0, 1.0);
     let sum: f64 = weight.iter().sum();
     let mut cumulative = vec![0.0; STEPS + 1];
     for k in 0..STEPS {
-        cumulative[k + 1] = cumulative[k] + (1.0 - share) * weight[k] / sum + share * depth[k];
+        let step = (1.0 - share) * weight[k] / sum + share * depth[k];
+        cumulative[k + 1] = cumulative[k] + step + skin_share * skin[k];
     }
     let end = cumulative[STEPS];
     cumulative.iter().map(|c| c / end).collect()
 }
 
-/// Optical depth of each step as a share of the whole, in the mean over wavelengths, so that a cloud counts that is
-/// thin beside the gas at one wavelength and thick at another; and the largest whole.
-fn mean_depth(medium: &Medium, middle: impl Fn(usize) -> f64, dz: f64) -> (Vec<f64>, f64) {
-    let (mut mean, mut largest) = (vec![0.0; STEPS], 0.0f64);
+/// Vertical optical depth above which air is thick.
+pub const THIN: f64 = 4.0;
+/// Levels that thick air has besides at its upper side, as a share of the others: there the field bends over a
+/// fraction of a unit of optical depth. Found on a layer of depth 30 without loss, whose energy balance was 5 %
+/// short without them.
+const SKIN: f64 = 0.3;
+
+/// Optical depths of the steps of height.
+struct Depths {
+    /// Each step's share of the whole, in the mean over wavelengths, so that a cloud counts that is thin beside the
+    /// gas at one wavelength and thick at another.
+    shares: Vec<f64>,
+    /// Each step's share of what light straight down loses, likewise.
+    skin: Vec<f64>,
+    /// The largest whole.
+    largest: f64,
+}
+
+fn depths(medium: &Medium, middle: impl Fn(usize) -> f64, dz: f64) -> Depths {
+    let mut out = Depths { shares: vec![0.0; STEPS], skin: vec![0.0; STEPS], largest: 0.0 };
     let count = medium.wavelengths_nm.len();
     for w in 0..count {
         let extinction =
             |z: f64| medium.constituents.iter().map(|c| c.extinction(w) * c.density.at(z)).sum::<f64>();
         let depth: Vec<f64> = (0..STEPS).map(|k| extinction(middle(k)) * dz).collect();
         let whole: f64 = depth.iter().sum();
-        largest = largest.max(whole);
+        out.largest = out.largest.max(whole);
         if whole > 0.0 {
-            mean.iter_mut().zip(&depth).for_each(|(m, d)| *m += d / whole / count as f64);
+            out.shares.iter_mut().zip(&depth).for_each(|(m, d)| *m += d / whole / count as f64);
+        }
+        let mut left = 1.0;
+        for (skin, d) in out.skin.iter_mut().zip(&depth).rev() {
+            let through = left * libm::exp(-d);
+            *skin += (left - through) / count as f64;
+            left = through;
         }
     }
-    (mean, largest)
+    out
 }
 
 fn largest_extinction(medium: &Medium, altitude: f64) -> f64 {

@@ -7,6 +7,7 @@
 
 mod azimuth;
 pub mod balance;
+mod bundles;
 
 mod column;
 

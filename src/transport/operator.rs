@@ -1,6 +1,7 @@
 //! One order of scattering as a linear operator on the state, and the first order that starts it.
 
 use super::azimuth::{Pairs, SunAxis, midpoint_azimuths};
+use super::bundles::{self, Between, Bundle, Degrees, Part, Room};
 use super::column::Shells;
 use super::kernels::{self, FieldGroup, Scratch, SingleGroup};
 use super::levels::Levels;
@@ -10,11 +11,12 @@ use super::path::Path;
 use super::quadrature::{Direction, directions};
 use super::rays::{Attenuation, Hit, Ray, Sample};
 use super::refined::RefinedAxis;
-use super::state::State;
+use super::state::{State, source_factors};
 use super::sunlight::Sunlight;
 use crate::lanes::Lanes;
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_1_PI, PI};
+use std::ops::Range;
 
 /// Intervals of the refined sun axis for each of the state's.
 const REFINEMENT: usize = 3;
@@ -63,6 +65,9 @@ pub struct Operator<'a> {
     pub scatterers: Vec<usize>,
     /// `[level][direction]`
     pub rays: Vec<Vec<Ray>>,
+    /// `[level][direction]`: the rays' samples in bundles, in thick air.
+    bundles: Option<Vec<Vec<Vec<Bundle>>>>,
+    degrees: Degrees,
     pairs: Pairs,
 }
 
@@ -93,7 +98,31 @@ impl<'a> Operator<'a> {
             })
             .collect();
         let pairs = Pairs::new(&geometry.axis.mu_s, &midpoint_azimuths(azimuths));
-        Operator { geometry, optics, sunlight, basis, shares, scatterers, rays, pairs }
+        let (bundles, degrees) = (None, Degrees::new(basis));
+        let mut operator =
+            Operator { geometry, optics, sunlight, basis, shares, scatterers, rays, bundles, degrees, pairs };
+        operator.bundles = levels.is_refined().then(|| operator.bundle());
+        operator
+    }
+
+    /// The samples of all rays in bundles.
+    fn bundle(&self) -> Vec<Vec<Vec<Bundle>>> {
+        let levels = &self.geometry.levels;
+        let zeroth: Vec<usize> = self.basis.of_order(0).collect();
+        let sources: Vec<Vec<Lanes>> = (0..levels.field.len())
+            .map(|n| source_factors(self.basis, self.optics, &self.shares, &self.scatterers, n))
+            .map(|all| zeroth.iter().map(|&t| all[t]).collect())
+            .collect();
+        let turns = bundles::turns();
+        let level = |(gather, rays): (&Gather, &Vec<Ray>)| {
+            let one = |((d, _), ray): (&(Direction, Path), &Ray)| {
+                let part = Part { weights: &ray.weights, sources: &sources };
+                let between = Between::Squares;
+                bundles::bundle(&ray.samples, d.mu, &[part], levels, self.basis, &turns, between)
+            };
+            gather.directions.iter().zip(rays).map(one).collect()
+        };
+        self.geometry.gathers.par_iter().zip(&self.rays).map(level).collect()
     }
 
     fn zero(&self) -> State {
@@ -101,11 +130,12 @@ impl<'a> Operator<'a> {
     }
 
     /// Gathers the moments of a radiance, given along each direction of each level for all pairs.
-    /// `radiance(level, direction number, scratch, out)` adds to `out`, one value a pair.
-    pub(super) fn gather(
+    /// `radiance(level, direction number, room, out)` adds to `out`, one value a pair; of a level, it is asked for all
+    /// directions in order, with the same room.
+    pub(super) fn gather<Room: Default>(
         &self,
         pairs: &Pairs,
-        radiance: impl Fn(usize, usize, &mut Scratch, &mut [Lanes]) + Sync,
+        radiance: impl Fn(usize, usize, &mut Room, &mut [Lanes]) + Sync,
     ) -> State {
         let mut state = self.zero();
         let stride = state.suns * state.terms;
@@ -116,15 +146,15 @@ impl<'a> Operator<'a> {
             .par_chunks_mut(stride)
             .enumerate()
             .map_init(
-                || (Scratch::default(), vec![Lanes::ZERO; pairs.len()]),
-                |(scratch, out), (level, moments)| {
+                || (Room::default(), vec![Lanes::ZERO; pairs.len()]),
+                |(room, out), (level, moments)| {
                     let mut flux = vec![Lanes::ZERO; if level == 0 { state.suns } else { 0 }];
                     for (j, (d, _)) in self.geometry.gathers[level].directions.iter().enumerate() {
                         out.fill(Lanes::ZERO);
                         crate::isa::run(
                             #[inline(always)]
                             || {
-                                radiance(level, j, scratch, out);
+                                radiance(level, j, room, out);
                                 azimuth.add(d, out, moments, &mut flux);
                             },
                         );
@@ -142,27 +172,64 @@ impl<'a> Operator<'a> {
     /// The next order of scattering: moments of the light that the field of `state` and the ground lit by it
     /// send out (Elek & Kmoch Eqs. 9–12 in one step).
     pub fn apply(&self, state: &State) -> State {
+        match &self.bundles {
+            Some(bundles) => self.apply_bundles(bundles, state),
+            None => self.apply_samples(state),
+        }
+    }
+
+    /// [`Operator::apply`] sample by sample.
+    fn apply_samples(&self, state: &State) -> State {
         let levels = &self.geometry.levels;
         let field = state.field(self.basis, self.optics, levels, &self.shares, &self.scatterers);
         let field = self.geometry.refined.prepare(field);
-        let ground_radiance = self.optics.albedo * FRAC_1_PI as f32;
         self.gather(
             &self.pairs,
             #[inline(always)]
-            |level, j, scratch, out| {
+            |level, j, scratch: &mut Scratch, out| {
                 let (d, ray) = (&self.geometry.gathers[level].directions[j].0, &self.rays[level][j]);
                 let group = FieldGroup { field: &field, basis: self.basis, weights: &ray.weights };
                 let axis = &self.geometry.refined;
                 kernels::multiple(&ray.samples, d.mu as f32, &[group], axis, &self.pairs, scratch, out);
-                if let Some(hit) = &ray.hit {
-                    let factor = hit.transmittance * ground_radiance;
-                    for (p, out) in out.iter_mut().enumerate() {
-                        let mu_s = self.pairs.mu_s[p] * hit.cos_turn + self.pairs.across[p] * hit.sin_turn;
-                        *out += interpolate(&state.ground, &self.geometry.axis, mu_s) * factor;
-                    }
-                }
+                self.add_ground(ray, state, out);
             },
         )
+    }
+
+    /// [`Operator::apply`] in thick air.
+    fn apply_bundles(&self, bundles: &[Vec<Vec<Bundle>>], state: &State) -> State {
+        let moments = &state.moments;
+        let size = state.suns * self.basis.modes;
+        self.gather(
+            &self.pairs,
+            #[inline(always)]
+            |level, j, (products, range, room): &mut (Vec<Lanes>, Range<usize>, Room), out| {
+                let rays = &bundles[level];
+                if j == 0 || j == range.end {
+                    *range = j..j + bundles::together(&rays[j..]);
+                    let rays = &rays[range.clone()];
+                    bundles::products(rays, moments, state.suns, self.basis, &self.degrees, products);
+                }
+                let begin: usize = rays[range.start..j].iter().map(Vec::len).sum();
+                let own = &products[begin * size..][..rays[j].len() * size];
+                let mu = self.geometry.gathers[level].directions[j].0.mu as f32;
+                let (axis, suns) = (&self.geometry.refined, state.suns);
+                bundles::add(&rays[j], own, mu, self.basis, axis, suns, &self.pairs, room, out);
+                self.add_ground(&self.rays[level][j], state, out);
+            },
+        )
+    }
+
+    /// Adds the light that the ground scatters, lit by the diffuse light of `state`.
+    #[inline(always)]
+    fn add_ground(&self, ray: &Ray, state: &State, out: &mut [Lanes]) {
+        if let Some(hit) = &ray.hit {
+            let factor = hit.transmittance * (self.optics.albedo * FRAC_1_PI as f32);
+            for (p, out) in out.iter_mut().enumerate() {
+                let mu_s = self.pairs.mu_s[p] * hit.cos_turn + self.pairs.across[p] * hit.sin_turn;
+                *out += interpolate(&state.ground, &self.geometry.axis, mu_s) * factor;
+            }
+        }
     }
 
     /// The first order: sunlight scattered or reflected once (Eqs. 7–8).
@@ -174,7 +241,7 @@ impl<'a> Operator<'a> {
         self.gather(
             &pairs,
             #[inline(always)]
-            |level, j, _, out| {
+            |level, j, (): &mut (), out| {
                 let (d, path) = &geometry.gathers[level].directions[j];
                 let samples = Sample::all(path, &geometry.levels, false);
                 let attenuation = Attenuation::new(path, &self.optics.extinction);

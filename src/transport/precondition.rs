@@ -8,6 +8,8 @@ use std::f64::consts::{FRAC_1_PI, PI};
 
 /// The lowest degrees of the azimuthal mean that take part; the rest is left to the iteration.
 const DEGREES: usize = 3;
+/// The same in thick air, where many more applications are saved.
+const THICK_DEGREES: usize = 5;
 
 /// LU factors of I − A of one column, sixteen wavelengths at once; the same for all sun nodes.
 pub struct Preconditioner {
@@ -21,7 +23,8 @@ pub struct Preconditioner {
 impl Preconditioner {
     pub fn new(operator: &Operator) -> Self {
         let basis = operator.basis;
-        let terms: Vec<usize> = (0..basis.len()).filter(|&t| basis.orders[t] == 0).take(DEGREES).collect();
+        let thick = operator.geometry.levels.is_refined();
+        let terms: Vec<usize> = basis.of_order(0).take(if thick { THICK_DEGREES } else { DEGREES }).collect();
         let levels = operator.geometry.levels.coarse.len();
         let size = levels * terms.len() + 1;
         let mut p = Preconditioner { size, levels, terms, factors: vec![Lanes::ZERO; size * size] };

@@ -5,14 +5,14 @@ use super::column::Shells;
 use super::forward::unscattered;
 use super::krylov::converge;
 pub use super::levels::LevelCounts;
-use super::levels::Levels;
+use super::levels::{Levels, THIN};
 use super::moments::{Basis, MOST_DEGREE};
 use super::operator::{Geometry, Operator};
 use super::optics::Optics;
 use super::state::State;
 use super::sunlight::{SunColumns, Sunlight};
 use crate::lanes::{Lanes, WIDTH};
-use crate::medium::Medium;
+use crate::medium::{Constituent, Medium};
 
 /// Which orders of scattering are summed. A reflection by the ground counts as one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,12 +82,21 @@ impl Resolution {
     /// In thick air the field is looked up on more levels than hold the state: it bends over a unit of optical
     /// depth. Rules found by the energy balance: within 0.12 % for `earth` at 10, 30 and 100 times its density.
     pub fn levels_in(&self, medium: &Medium) -> LevelCounts {
-        const THIN: f64 = 4.0;
         let depth = medium.vertical_optical_depth().into_iter().fold(0.0, f64::max);
         let refinement = ((depth / THIN).sqrt().ceil().clamp(1.0, 8.0) as usize).max(self.levels.refinement);
-        let cuts = self.levels.cuts.div_ceil(refinement);
+        let cuts = (self.levels.cuts / refinement).max(1);
         let more = 1.0 + ((depth - THIN) / 60.0).clamp(0.0, 1.0);
         LevelCounts { coarse: (self.levels.coarse as f64 * more) as usize, refinement, cuts }
+    }
+}
+
+impl Resolution {
+    /// Thick air takes fewer azimuths of the first order: what its phase functions have beyond the degree of the
+    /// moments is gone after a few of very many scatterings.
+    fn in_air_of(&self, levels: &Levels) -> Resolution {
+        let first_azimuths =
+            if levels.is_refined() { self.degree.max(THICK_AZIMUTHS) } else { self.first_azimuths };
+        Resolution { first_azimuths: first_azimuths.min(self.first_azimuths), ..*self }
     }
 }
 
@@ -120,6 +129,9 @@ pub struct Report {
     pub residual: Vec<f64>,
 }
 
+/// Azimuths of the first order in thick air, or as many as the moments have degrees.
+const THICK_AZIMUTHS: usize = 8;
+
 /// A solved medium.
 pub struct Solution {
     pub geometry: Geometry,
@@ -142,8 +154,10 @@ impl Solution {
     /// Solves a medium at all its wavelengths.
     pub fn new(medium: &Medium, resolution: &Resolution, orders: Orders) -> Self {
         let levels = Levels::new(medium, resolution.levels_in(medium));
+        let resolution = &resolution.in_air_of(&levels);
         let shells = Shells::new(medium, &levels);
-        let columns = SunColumns::new(&shells, &levels, resolution.sunlight_nodes);
+        let least = least_extinction(medium, resolution.degree, orders);
+        let columns = SunColumns::new(&shells, &levels, resolution.sunlight_nodes, &least);
         let axis = SunAxis::new(resolution.sun_nodes, lowest_sun(medium));
         let basis = Basis::new(&needed_degrees(medium, resolution.degree, orders));
         let geometry = Geometry::new(levels, shells, axis, resolution.zeniths, basis.len());
@@ -164,6 +178,17 @@ impl Solution {
         }
         Solution { geometry, columns, basis, batches, orders, report }
     }
+}
+
+/// Of each constituent, the smallest extinction coefficient at any wavelength, 1/m, without what counts as
+/// unscattered.
+fn least_extinction(medium: &Medium, largest: usize, orders: Orders) -> Vec<f64> {
+    let least = |c: &Constituent| {
+        let passed = unscattered(&c.phase, largest, orders.limit());
+        let left = passed.iter().enumerate().map(|(w, f)| c.extinction(w) - f * c.scattering[w]);
+        left.fold(f64::INFINITY, f64::min)
+    };
+    medium.constituents.iter().map(least).collect()
 }
 
 /// Degrees at which any scatterer's phase function has something, up to `largest`; always degree 0. What counts as

@@ -39,9 +39,13 @@ impl State {
 
     /// Adds a multiple of another state, wavelength by wavelength.
     pub fn add_times(&mut self, other: &State, factor: Lanes) {
-        for (a, b) in self.moments.iter_mut().zip(&other.moments) {
-            *a += *b * factor;
-        }
+        use rayon::prelude::*;
+        const PART: usize = 4096;
+        self.moments.par_chunks_mut(PART).zip(other.moments.par_chunks(PART)).for_each(|(a, b)| {
+            for (a, b) in a.iter_mut().zip(b) {
+                *a += *b * factor;
+            }
+        });
         for (a, b) in self.ground.iter_mut().zip(&other.ground) {
             *a += *b * factor;
         }
