@@ -185,7 +185,7 @@ impl<'a> Painter<'a> {
             .map(|(g, weights)| FieldGroup { field: &g.field, basis: &g.basis, weights })
             .collect();
         kernels::multiple(&samples, mu, &groups, &self.axis, pairs, &mut out.scratch, &mut out.multiple);
-        if self.together {
+        if self.together && self.groups.len() > 1 {
             let (first, rest) = out.multiple.split_at_mut(pairs.len());
             for group in rest.chunks_exact_mut(pairs.len()) {
                 first.iter_mut().zip(group.iter()).for_each(|(f, g)| *f += *g);

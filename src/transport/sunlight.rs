@@ -262,8 +262,8 @@ mod tests {
             phase: vec![PhaseFunction::Isotropic],
         };
         let medium = Medium {
-            ground_radius: 1e8,
-            top_radius: 1e8 + 1e4,
+            ground_radius: 3e6,
+            top_radius: 3e6 + 1e4,
             wavelengths_nm: vec![550.0],
             ground_albedo: vec![0.3],
             constituents: vec![layer],
