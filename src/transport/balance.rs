@@ -1,6 +1,5 @@
 //! Energy balance of a solved planet: what comes in, goes out and stays.
 
-use super::azimuth::midpoint_azimuths;
 use super::fill::{Painter, RayLight, SunPairs, Wanted};
 use super::quadrature::{directions, gauss_legendre};
 use super::solve::{Batch, Solution, lowest_sun};
@@ -33,7 +32,7 @@ impl Balance {
 }
 
 const SUNS: usize = 24;
-const AZIMUTHS: usize = 6;
+const AZIMUTHS: usize = 10;
 const ZENITHS: usize = 20;
 
 /// Per wavelength of a converged solution of `medium`.
@@ -55,12 +54,18 @@ pub fn balance(solution: &Solution, medium: &Medium) -> Vec<Balance> {
     out
 }
 
+/// Cosines of azimuths and weights that sum to 1, denser towards the sun: haze sends much of the light that leaves at the limb
+/// a few degrees beside it. Six even ones lost 1.4 % of all that Titan scatters.
+fn azimuths() -> Vec<(f64, f64)> {
+    gauss_legendre(AZIMUTHS).into_iter().map(|(u, w)| (libm::cos(PI * u * u), 2.0 * u * w)).collect()
+}
+
 /// Sun cosines and weights over the part of the sphere that has light.
 fn suns(lowest: f64) -> Vec<(f64, f64)> {
     let part = |from: f64, to: f64, n: usize| {
         gauss_legendre(n).into_iter().map(move |(x, w)| (from + (to - from) * x, (to - from) * w))
     };
-    part(lowest, 0.0, SUNS / 2).chain(part(0.0, 0.15, SUNS / 2)).chain(part(0.15, 1.0, SUNS)).collect()
+    part(lowest, 0.0, SUNS).chain(part(0.0, 0.15, SUNS / 2)).chain(part(0.15, 1.0, SUNS / 2)).collect()
 }
 
 /// Light that leaves through the top: ∫ over the sphere of the upward flux, over π r_top².
@@ -73,7 +78,8 @@ fn scattered_out(solution: &Solution, batch: &Batch, medium: &Medium) -> Vec<f64
     let painter = Painter::new(solution, batch, &groups).together();
     let suns = suns(lowest_sun(medium));
     let cosines: Vec<f64> = suns.iter().map(|s| s.0).collect();
-    let pairs = SunPairs::new(&cosines, &midpoint_azimuths(AZIMUTHS));
+    let azimuths = azimuths();
+    let pairs = SunPairs::new(&cosines, &azimuths.iter().map(|a| a.0).collect::<Vec<_>>());
     let mut light = RayLight::default();
     let mut total = vec![0.0; batch.optics.count];
     for d in directions(top, ground, top, ZENITHS) {
@@ -96,7 +102,7 @@ fn scattered_out(solution: &Solution, batch: &Batch, medium: &Medium) -> Vec<f64
                     light.depth,
                 );
             }
-            let weight = suns[p / AZIMUTHS].1 * d.weight * -d.mu / AZIMUTHS as f64;
+            let weight = suns[p / AZIMUTHS].1 * azimuths[p % AZIMUTHS].1 * d.weight * -d.mu;
             // 2π over azimuth, 2π r² over the ring of equal sun height, over π r².
             for (w, t) in total.iter_mut().enumerate() {
                 *t += 4.0 * PI * weight * f64::from(radiance[w]);
