@@ -1,15 +1,22 @@
-// Look-ups in baked skies: what both layouts share. Concatenate this file with compact.wgsl or elek2010.wgsl.
+// Look-ups in baked skies: what both layouts share. Concatenate this file with compact.wgsl, elek2010.wgsl or both.
 //
 // Conventions
 //  - Lengths in m. `altitude` is height over the ground, never a radius; the ground's radius is Table.radii.x.
 //  - `mu` cosine of the view's zenith angle (1 looks up), `mu_s` that of the direction to the sun, `nu` cosine of the
-//    angle between the two, all at the observer. Outside the shell, move the observer with `enter` first.
+//    angle between the two, all at the observer. Every view goes through `enter` first, which moves observers outside
+//    the shell to it.
+//  - Radiance comes over the star's irradiance, 1/sr, at four wavelengths; `rgb_of` makes linear RGB of it, luminance
+//    over the star's illuminance. The sun's disc is in no table.
 //  - Texel i of n of an axis has the coordinate i / (n - 1): both ends lie on texel centres. The view axis has two
 //    halves, rays that hit the ground and rays that do not; nothing is filtered across them.
 //  - A 4D table (altitude, view, sun, azimuth) is a 3D texture, x altitude, y view, z = azimuth index * suns + sun index;
-//    azimuth is interpolated by hand between two fetches. Textures want linear filtering and clamped edges.
-//  - Samples are interpolated as they are stored, then decoded.
-//  - Everything that these functions need of bake.json is in `Table`, one for each texture.
+//    azimuth is interpolated by hand between two fetches. Tables of single scattering, all of one size, are stacked in z.
+//  - Samples are interpolated as they are stored, then decoded. Textures are half-float RGBA and want linear filtering.
+//    Most GPUs weigh texels in steps of 1/256, which a table of logarithms shows where neighbours differ by much: at
+//    the dark edge by 4 %. With HAND_FILTERED the weights are those of f32.
+//  - Everything that these functions need of bake.json is in `Tables`, made by the code that loads the textures.
+
+override HAND_FILTERED: bool = false;
 
 struct Table {
     // Texels along altitude, view, sun, azimuth (1 where there is no such axis).
@@ -26,6 +33,26 @@ struct Table {
     offset: vec4f,
     floor: vec4f,
     log: vec4f,
+}
+
+// All that a layout has; what it lacks is zero.
+struct Tables {
+    // `compact`: light scattered more than once. `elek2010`: all of it.
+    volume: Table,
+    // Light scattered once by each group of constituents; scale and offset of a group are below.
+    single: Table,
+    depth: Table,
+    scatterers: Table,
+    irradiance: Table,
+    phase: Table,
+    group_scale: array<vec4f, 6>,
+    group_offset: array<vec4f, 6>,
+    ground_albedo: vec4f,
+    // Rows R, G, B from the four wavelengths, over the star's illuminance.
+    rgb: array<vec4f, 3>,
+    // Groups, 1 where `scatterers` is there, row of the phase table for `elek2010`'s aerosol (-1: none), the star's
+    // illuminance in lx.
+    counts: vec4f,
 }
 
 // A view inside the shell.
@@ -113,41 +140,75 @@ fn sun_is_up(t: Table, mu_s: f32) -> bool {
     return mu_s >= t.radii.z;
 }
 
-// Texture coordinate of a place 0..1 on an axis of n texels, `first` texels into a row of `all`.
-fn texel_centre(x: f32, n: f32, first: f32, all: f32) -> f32 {
-    return (first + 0.5 + clamp(x, 0.0, 1.0) * (n - 1.0)) / all;
+// Position of a coordinate 0..1 among n texels, counted from the centre of the first.
+fn texel(x: f32, n: f32) -> f32 {
+    return clamp(x, 0.0, 1.0) * (n - 1.0);
 }
 
-fn view_texture(t: Table, p: Place) -> f32 {
+fn view_texel(t: Table, p: Place) -> f32 {
     let half = 0.5 * t.size.y;
-    return texel_centre(view_coordinate(t, p.altitude, p.mu, p.hits_ground), half, select(half, 0.0, p.hits_ground), t.size.y);
+    return texel(view_coordinate(t, p.altitude, p.mu, p.hits_ground), half) + select(half, 0.0, p.hits_ground);
+}
+
+// Stored sample at a position in texels.
+fn fetch_plane(texture: texture_2d<f32>, filtering: sampler, at: vec2f) -> vec4f {
+    let size = vec2f(textureDimensions(texture));
+    if !HAND_FILTERED {
+        return textureSampleLevel(texture, filtering, (at + 0.5) / size, 0.0);
+    }
+    let low = floor(at);
+    let w = at - low;
+    let i = vec2i(low);
+    let j = min(i + 1, vec2i(size) - 1);
+    let below = mix(textureLoad(texture, i, 0), textureLoad(texture, vec2i(j.x, i.y), 0), w.x);
+    let above = mix(textureLoad(texture, vec2i(i.x, j.y), 0), textureLoad(texture, j, 0), w.x);
+    return mix(below, above, w.y);
+}
+
+fn fetch_slice(texture: texture_3d<f32>, i: vec2i, j: vec2i, w: vec2f, z: i32) -> vec4f {
+    let below = mix(textureLoad(texture, vec3i(i, z), 0), textureLoad(texture, vec3i(j.x, i.y, z), 0), w.x);
+    let above = mix(textureLoad(texture, vec3i(i.x, j.y, z), 0), textureLoad(texture, vec3i(j, z), 0), w.x);
+    return mix(below, above, w.y);
+}
+
+fn fetch_volume(texture: texture_3d<f32>, filtering: sampler, at: vec3f) -> vec4f {
+    let size = vec3f(textureDimensions(texture));
+    if !HAND_FILTERED {
+        return textureSampleLevel(texture, filtering, (at + 0.5) / size, 0.0);
+    }
+    let low = floor(at);
+    let w = at - low;
+    let i = vec3i(low);
+    let j = min(i + 1, vec3i(size) - 1);
+    return mix(fetch_slice(texture, i.xy, j.xy, w.xy, i.z), fetch_slice(texture, i.xy, j.xy, w.xy, j.z), w.z);
 }
 
 fn cos_azimuth(p: Place) -> f32 {
-    let sines = sqrt(max((1.0 - p.mu * p.mu) * (1.0 - p.mu_s * p.mu_s), 0.0));
+    let sines = sqrt(max((1.0 - p.mu) * (1.0 + p.mu) * (1.0 - p.mu_s) * (1.0 + p.mu_s), 0.0));
     return select(1.0, clamp((p.nu - p.mu * p.mu_s) / sines, -1.0, 1.0), sines > 0.0);
 }
 
-// Decoded value of a 4D table; 0 where the sun is below its axis.
-fn volume_at(t: Table, texture: texture_3d<f32>, filtering: sampler, p: Place) -> vec4f {
-    if !sun_is_up(t, p.mu_s) {
-        return vec4f(0.0);
-    }
-    let x = texel_centre(altitude_coordinate(t, p.altitude), t.size.x, 0.0, t.size.x);
-    let y = view_texture(t, p);
-    let sun = sun_coordinate(t, p.mu_s);
-    let azimuth = 0.5 * (1.0 + cos_azimuth(p)) * (t.size.w - 1.0);
-    let slice = min(floor(azimuth), t.size.w - 2.0);
-    let depth = t.size.z * t.size.w;
-    let a = textureSampleLevel(texture, filtering, vec3f(x, y, texel_centre(sun, t.size.z, slice * t.size.z, depth)), 0.0);
-    let b = textureSampleLevel(texture, filtering, vec3f(x, y, texel_centre(sun, t.size.z, (slice + 1.0) * t.size.z, depth)), 0.0);
-    return decode(t, mix(a, b, azimuth - slice));
+// Where a place lies in a 4D table: x, y, z in the slices of the lower azimuth, and the share of the next azimuth.
+fn volume_texel(t: Table, p: Place) -> vec4f {
+    let azimuth = texel(0.5 * (1.0 + cos_azimuth(p)), t.size.w);
+    let lower = min(floor(azimuth), t.size.w - 2.0);
+    let sun = texel(sun_coordinate(t, p.mu_s), t.size.z);
+    let x = texel(altitude_coordinate(t, p.altitude), t.size.x);
+    return vec4f(x, view_texel(t, p), lower * t.size.z + sun, azimuth - lower);
+}
+
+// Stored sample of the 4D table number `group` of a stack.
+fn fetch_4d(t: Table, texture: texture_3d<f32>, filtering: sampler, at: vec4f, group: f32) -> vec4f {
+    let lower = at.xyz + vec3f(0.0, 0.0, group * t.size.z * t.size.w);
+    let a = fetch_volume(texture, filtering, lower);
+    let b = fetch_volume(texture, filtering, lower + vec3f(0.0, 0.0, t.size.z));
+    return mix(a, b, at.w);
 }
 
 // Optical depth of a ray, of a table over altitude and view.
 fn depth_at(t: Table, texture: texture_2d<f32>, filtering: sampler, p: Place) -> vec4f {
-    let x = texel_centre(altitude_coordinate(t, p.altitude), t.size.x, 0.0, t.size.x);
-    let stored = textureSampleLevel(texture, filtering, vec2f(x, view_texture(t, p)), 0.0);
+    let at = vec2f(texel(altitude_coordinate(t, p.altitude), t.size.x), view_texel(t, p));
+    let stored = fetch_plane(texture, filtering, at);
     return decode(t, stored) * select(1.0, ray_length(t, p.altitude, p.mu, p.hits_ground), t.radii.w > 0.5);
 }
 
@@ -161,8 +222,8 @@ fn sunlight_at(t: Table, texture: texture_2d<f32>, filtering: sampler, altitude:
 
 // A row of the phase table: 1/sr at the cosine of the scattering angle.
 fn phase_at(t: Table, texture: texture_2d<f32>, filtering: sampler, nu: f32, row: f32) -> vec4f {
-    let x = texel_centre(sqrt(max(0.5 * (1.0 - nu), 0.0)), t.size.x, 0.0, t.size.x);
-    return decode(t, textureSampleLevel(texture, filtering, vec2f(x, (row + 0.5) / t.size.y), 0.0));
+    let at = vec2f(texel(sqrt(max(0.5 * (1.0 - nu), 0.0)), t.size.x), row);
+    return decode(t, fetch_plane(texture, filtering, at));
 }
 
 // Diffuse irradiance of the ground.
@@ -170,11 +231,21 @@ fn irradiance_at(t: Table, texture: texture_2d<f32>, filtering: sampler, mu_s: f
     if !sun_is_up(t, mu_s) {
         return vec4f(0.0);
     }
-    let x = texel_centre(sun_coordinate(t, mu_s), t.size.x, 0.0, t.size.x);
-    return decode(t, textureSampleLevel(texture, filtering, vec2f(x, 0.5), 0.0));
+    return decode(t, fetch_plane(texture, filtering, vec2f(texel(sun_coordinate(t, mu_s), t.size.x), 0.0)));
 }
 
-// The place where a ray meets the shell, for observers outside; the observer's own inside.
+// Linear RGB, luminance over the star's illuminance, of light at the four wavelengths.
+fn rgb_of(t: Tables, light: vec4f) -> vec3f {
+    return vec3f(dot(t.rgb[0], light), dot(t.rgb[1], light), dot(t.rgb[2], light));
+}
+
+// 1 - exp(-x) with all its digits.
+fn opacity(x: vec4f) -> vec4f {
+    let few = x * (1.0 - x * 0.5 * (1.0 - x / 3.0 * (1.0 - x * 0.25)));
+    return select(1.0 - exp(-x), few, x < vec4f(0.05));
+}
+
+// The place of a view: the observer's own inside the shell, for observers outside where the ray meets it.
 fn enter(t: Table, altitude: f32, mu: f32, mu_s: f32, nu: f32) -> Place {
     let height = shell_height(t);
     if altitude <= height {
@@ -182,7 +253,7 @@ fn enter(t: Table, altitude: f32, mu: f32, mu_s: f32, nu: f32) -> Place {
     }
     let r = t.radii.x + altitude;
     let top = t.radii.y;
-    let across = r * sqrt(max(1.0 - mu * mu, 0.0));
+    let across = r * sqrt(max((1.0 - mu) * (1.0 + mu), 0.0));
     let along = -sqrt(max((top - across) * (top + across), 0.0));
     let mu_s_there = clamp((r * mu_s + (along - r * mu) * nu) / top, -1.0, 1.0);
     return Place(height, along / top, mu_s_there, nu, across <= t.radii.x, mu < 0.0 && across < top);
