@@ -3,7 +3,6 @@
 use super::run::*;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 fn refused(done: &Ran, code: i32, words: &[&str]) {
     assert_eq!(done.code, Some(code), "{}", done.err);
@@ -38,7 +37,7 @@ fn draw(bake: &Path, more: &[&str]) -> Ran {
 #[test]
 #[cfg(target_os = "linux")]
 fn without_a_gpu_the_message_says_what_to_install() {
-    let done = Command::new(env!("CARGO_BIN_EXE_tyndall-preview"))
+    let done = preview_command()
         .args([earth(), "--headless", "--out", "never.png"])
         .envs(["VK_ICD_FILENAMES", "VK_DRIVER_FILES"].map(|name| (name, "/nowhere.json")))
         .output()

@@ -21,8 +21,15 @@ pub fn tyndall(arguments: &[&str]) -> Ran {
     ran(Command::new(env!("CARGO_BIN_EXE_tyndall")).args(arguments).output().unwrap())
 }
 
+/// Mesa's layer that chooses a device is left out: without a desktop session it talks on stderr.
+pub fn preview_command() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tyndall-preview"));
+    command.env("NODEVICE_SELECT", "1");
+    command
+}
+
 pub fn preview(arguments: &[&str]) -> Ran {
-    ran(Command::new(env!("CARGO_BIN_EXE_tyndall-preview")).args(arguments).output().unwrap())
+    ran(preview_command().args(arguments).output().unwrap())
 }
 
 /// Tables coarse enough for a bake of a second, each axis of another size so that none can stand for another.

@@ -1,10 +1,11 @@
 //! Times of a frame by tables, by the march of Nishita 1993, and by that march with a 2D table.
 
 use crate::bake::Bake;
-use crate::frame::{FrameUniform, Look, Painter, View};
+use crate::frame::{FrameUniform, View};
 use crate::gpu::Gpu;
 use crate::headless::pixels;
 use crate::options::Options;
+use crate::painter::{Look, Painter};
 use crate::resources::Method;
 use crate::stopwatch::{Stopwatch, Times};
 use crate::target::{MEASURED, SHOWN, Target};
@@ -58,12 +59,12 @@ fn timed(
     method: Method,
     name: &str,
 ) -> Result<Times> {
-    let look = Look { method, hand_filtered: options.hand_filtered, format: SHOWN };
+    let look = Look { method, ..options.look(bake, SHOWN)? };
     let painter = Painter::new(gpu, bake, &look)?;
     let target = Target::new(gpu, view.size, look.format)?;
     let frame = FrameUniform::new(bake, view);
     let times = stopwatch.times(gpu, options.frames, |encoder, timestamps| {
-        painter.draw(gpu, encoder, &target.view, &frame, timestamps);
+        painter.draw(gpu, bake, encoder, &target.view, &frame, timestamps);
     })?;
     println!("{name:<22} {:>9.3} {:>9.3} {:>9.3}", times.min, times.median, times.max);
     Ok(times)
@@ -71,7 +72,7 @@ fn timed(
 
 /// Light of each pixel of a small picture.
 fn light(gpu: &Gpu, bake: &Bake, view: &View, method: Method) -> Result<Vec<[f32; 4]>> {
-    let look = Look { method, hand_filtered: false, format: MEASURED };
+    let look = Look { method, hand_filtered: false, format: MEASURED, relief: None };
     let small = View { size: SMALL, ..*view };
     Ok(bytemuck::pod_collect_to_vec(&pixels(gpu, bake, &small, &look)?))
 }

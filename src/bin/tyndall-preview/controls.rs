@@ -90,7 +90,10 @@ impl Controls {
             }
             KeyCode::Space => self.day = if self.day.is_some() { None } else { Some(self.time_of_day()) },
             KeyCode::KeyA => self.exposure = Exposure::Auto(0.0),
-            KeyCode::KeyC => self.next_camera(),
+            KeyCode::KeyC => {
+                self.next_camera();
+                return Request::Rebuild;
+            }
             KeyCode::KeyT => {
                 self.tone_mapping = match self.tone_mapping {
                     ToneMapping::Paper => ToneMapping::Neutral,
@@ -178,6 +181,7 @@ mod tests {
             size: [64, 36],
             exposure: 1.0,
             tone_mapping: ToneMapping::Neutral,
+            horizon_mended: true,
             g: None,
         };
         Controls::new(&view, Exposure::Auto(0.0), Method::Table, [32, 8], radii)

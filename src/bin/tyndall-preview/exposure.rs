@@ -18,7 +18,7 @@ pub enum Exposure {
 /// Luminance of 1 on the display at EV 0, cd/m².
 const SATURATION: f64 = 1.2;
 /// Of the geometric mean of all that is lit.
-const MIDDLE: f64 = 0.22;
+const MIDDLE: f64 = 0.3;
 
 impl std::str::FromStr for Exposure {
     type Err = String;

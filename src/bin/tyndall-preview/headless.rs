@@ -2,9 +2,10 @@
 
 use crate::bake::Bake;
 use crate::exposure;
-use crate::frame::{FrameUniform, Look, Painter, View};
+use crate::frame::{FrameUniform, View};
 use crate::gpu::Gpu;
 use crate::options::Options;
+use crate::painter::{Look, Painter};
 use crate::target::{SHOWN, Target};
 use std::io::BufWriter;
 use std::path::Path;
@@ -13,7 +14,7 @@ use tyndall::{Error, Result};
 /// Draws the frame of the options and writes it as PNG.
 pub fn run(gpu: &Gpu, bake: &Bake, options: &Options, out: &Path) -> Result<()> {
     let view = options.view(bake)?;
-    let look = Look { method: options.method(bake)?, hand_filtered: options.hand_filtered, format: SHOWN };
+    let look = options.look(bake, SHOWN)?;
     write_rgba(out, view.size, &pixels(gpu, bake, &view, &look)?)?;
     let [width, height] = view.size;
     let (layout, ev) = (bake.layout.name(), exposure::ev100(view.exposure));
@@ -26,7 +27,7 @@ pub fn pixels(gpu: &Gpu, bake: &Bake, view: &View, look: &Look) -> Result<Vec<u8
     let target = Target::new(gpu, view.size, look.format)?;
     let painter = Painter::new(gpu, bake, look)?;
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    painter.draw(gpu, &mut encoder, &target.view, &FrameUniform::new(bake, view), None);
+    painter.draw(gpu, bake, &mut encoder, &target.view, &FrameUniform::new(bake, view), None);
     gpu.queue.submit([encoder.finish()]);
     target.read(gpu)
 }

@@ -4,6 +4,7 @@ use crate::bake::{Bake, Layout};
 use crate::camera::{Camera, Kind};
 use crate::exposure::{Exposure, factor};
 use crate::frame::{ToneMapping, View};
+use crate::painter::Look;
 use crate::resources::Method;
 use std::path::PathBuf;
 use tyndall::{Error, Result};
@@ -53,6 +54,12 @@ pub struct Options {
     /// g of Cornette and Shanks for the aerosol of layout elek2010, in place of the table's phase function
     #[arg(long, value_name = "G", allow_hyphen_values = true, value_parser = asymmetry)]
     pub g: Option<f64>,
+    /// Terrain around the observer, seen through the air
+    #[arg(long)]
+    pub relief: bool,
+    /// Show terrain by the plain difference of two look-ups, whose weakness near the horizon is else mended
+    #[arg(long, requires = "relief")]
+    pub bare_difference: bool,
     /// Where the light comes from
     #[arg(long, default_value = "table")]
     pub method: MethodName,
@@ -134,6 +141,15 @@ impl Options {
         })
     }
 
+    /// What draws the frame.
+    pub fn look(&self, bake: &Bake, format: wgpu::TextureFormat) -> Result<Look> {
+        let relief = self.relief.then_some(self.size);
+        if relief.is_some() && self.camera != Kind::Ground {
+            return Err(Error::Argument("--relief: wants --camera ground".into()));
+        }
+        Ok(Look { method: self.method(bake)?, hand_filtered: self.hand_filtered, format, relief })
+    }
+
     /// The frame that the options ask for.
     pub fn view(&self, bake: &Bake) -> Result<View> {
         if self.g.is_some() && bake.layout != Layout::Elek2010 {
@@ -149,6 +165,7 @@ impl Options {
         camera.field = self.field.unwrap_or(camera.field);
         let aspect = f64::from(self.size[0]) / f64::from(self.size[1]);
         let exposure = factor(self.exposure, bake, &camera, aspect);
-        Ok(View { camera, size: self.size, exposure, tone_mapping: self.tone_mapping, g: self.g })
+        let horizon_mended = !self.bare_difference;
+        Ok(View { camera, size: self.size, exposure, tone_mapping: self.tone_mapping, horizon_mended, g: self.g })
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::bake::Bake;
 use crate::gpu::Gpu;
-use crate::resources::{Method, Resources, look_ups, overrides};
+use crate::resources::{Baked, Method, look_ups, overrides};
 use std::io::Write;
 use std::path::Path;
 use tyndall::points::{Answer, Point, read_points, write_answers};
@@ -40,9 +40,9 @@ fn answers(gpu: &Gpu, bake: &Bake, points: &[Point], hand_filtered: bool) -> Res
     if points.is_empty() {
         return Ok(Vec::new());
     }
-    let resources = Resources::new(gpu, bake)?;
+    let baked = Baked::new(gpu, bake)?;
     let source = look_ups(bake.layout, Method::Table) + include_str!("wgsl/points.wgsl");
-    let pipeline = pipeline(gpu, &resources, &source, hand_filtered);
+    let pipeline = pipeline(gpu, &baked, &source, hand_filtered);
     let views: Vec<[f32; 4]> = points.iter().map(in_single_precision).collect();
     let storage = wgpu::BufferUsages::STORAGE;
     let views = gpu.buffer(bytemuck::cast_slice(&views), storage);
@@ -60,7 +60,7 @@ fn answers(gpu: &Gpu, bake: &Bake, points: &[Point], hand_filtered: bool) -> Res
     {
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &resources.group, &[]);
+        pass.set_bind_group(0, &baked.bare, &[]);
         pass.set_bind_group(1, &group, &[]);
         pass.dispatch_workgroups((points.len() as u32).div_ceil(64), 1, 1);
     }
@@ -76,7 +76,7 @@ fn in_single_precision(p: &Point) -> [f32; 4] {
     [p.altitude, p.mu, p.mu_s, nu].map(|v| v as f32)
 }
 
-fn pipeline(gpu: &Gpu, resources: &Resources, source: &str, hand_filtered: bool) -> wgpu::ComputePipeline {
+fn pipeline(gpu: &Gpu, baked: &Baked, source: &str, hand_filtered: bool) -> wgpu::ComputePipeline {
     let storage = |binding, read_only| {
         let ty = wgpu::BufferBindingType::Storage { read_only };
         let ty = wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
@@ -88,7 +88,7 @@ fn pipeline(gpu: &Gpu, resources: &Resources, source: &str, hand_filtered: bool)
     });
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: None,
-        bind_group_layouts: &[Some(&resources.layout), Some(&views)],
+        bind_group_layouts: &[Some(&baked.layout), Some(&views)],
         immediate_size: 0,
     });
     gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -97,7 +97,7 @@ fn pipeline(gpu: &Gpu, resources: &Resources, source: &str, hand_filtered: bool)
         module: &gpu.shader("points", source),
         entry_point: Some("answer_views"),
         compilation_options: wgpu::PipelineCompilationOptions {
-            constants: &overrides(hand_filtered),
+            constants: &overrides(hand_filtered, false),
             ..Default::default()
         },
         cache: None,

@@ -10,6 +10,8 @@ const COMPACT: &str = include_str!("../../sky/wgsl/compact.wgsl");
 const ELEK2010: &str = include_str!("../../sky/wgsl/elek2010.wgsl");
 const BINDINGS: &str = include_str!("wgsl/bindings.wgsl");
 const SKY_COMPACT: &str = include_str!("wgsl/sky_compact.wgsl");
+const SLICES: &str = include_str!("../../sky/wgsl/slices.wgsl");
+const COMPACT_SLICED: &str = include_str!("../../sky/wgsl/compact_sliced.wgsl");
 const SKY_MARCH: &str = include_str!("wgsl/sky_march.wgsl");
 const SKY_ELEK2010: &str = include_str!("wgsl/sky_elek2010.wgsl");
 
@@ -25,17 +27,22 @@ pub enum Method {
 
 /// The look-ups of a layout, the files that engines copy, and the preview's bindings of them.
 pub fn look_ups(layout: Layout, method: Method) -> String {
-    let (layout, sky) = match (layout, method) {
-        (_, Method::March { .. }) => ("", SKY_MARCH),
-        (Layout::Compact, _) => (COMPACT, SKY_COMPACT),
-        (Layout::Elek2010, _) => (ELEK2010, SKY_ELEK2010),
+    let parts = match (layout, method) {
+        (_, Method::March { .. }) => vec![SHELL, BINDINGS, SKY_MARCH],
+        (Layout::Compact, _) => vec![SHELL, SLICES, COMPACT, COMPACT_SLICED, BINDINGS, SKY_COMPACT],
+        (Layout::Elek2010, _) => vec![SHELL, SLICES, ELEK2010, BINDINGS, SKY_ELEK2010],
     };
-    [SHELL, layout, BINDINGS, sky].join("\n")
+    parts.join("\n")
+}
+
+/// The pass that fills a frame's slices.
+pub fn slicing() -> String {
+    [SHELL, SLICES, BINDINGS, include_str!("wgsl/slice.wgsl")].join("\n")
 }
 
 /// Constants that a pipeline of the look-ups takes.
-pub fn overrides(hand_filtered: bool) -> [(&'static str, f64); 1] {
-    [("HAND_FILTERED", f64::from(u8::from(hand_filtered)))]
+pub fn overrides(hand_filtered: bool, sliced: bool) -> [(&'static str, f64); 2] {
+    [("HAND_FILTERED", hand_filtered), ("SLICED", sliced)].map(|(name, on)| (name, f64::from(u8::from(on))))
 }
 
 /// Textures and uniforms on the GPU, bound.
@@ -44,7 +51,18 @@ pub struct Resources {
     pub group: wgpu::BindGroup,
 }
 
-const STAGES: wgpu::ShaderStages = wgpu::ShaderStages::FRAGMENT.union(wgpu::ShaderStages::COMPUTE);
+/// A baked layout on the GPU.
+pub struct Baked {
+    pub layout: wgpu::BindGroupLayout,
+    /// With the slices, where there are any.
+    pub group: wgpu::BindGroup,
+    /// Without them, for the pass that fills them.
+    pub bare: wgpu::BindGroup,
+    /// None on GPUs that cannot filter them.
+    pub slices: Option<wgpu::Texture>,
+}
+
+const STAGES: wgpu::ShaderStages = wgpu::ShaderStages::VERTEX_FRAGMENT.union(wgpu::ShaderStages::COMPUTE);
 
 pub fn uniform_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
     let ty = wgpu::BufferBindingType::Uniform;
@@ -58,8 +76,8 @@ fn texture_entry(binding: u32, view_dimension: wgpu::TextureViewDimension) -> wg
     wgpu::BindGroupLayoutEntry { binding, visibility: STAGES, ty, count: None }
 }
 
-fn entries() -> [wgpu::BindGroupLayoutEntry; 8] {
-    use wgpu::TextureViewDimension::{D2, D3};
+fn entries() -> [wgpu::BindGroupLayoutEntry; 9] {
+    use wgpu::TextureViewDimension::{D2, D2Array, D3};
     let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
     [
         uniform_entry(0),
@@ -70,44 +88,83 @@ fn entries() -> [wgpu::BindGroupLayoutEntry; 8] {
         texture_entry(5, D2),
         texture_entry(6, D2),
         texture_entry(7, D2),
+        texture_entry(8, D2Array),
     ]
 }
 
-impl Resources {
+impl Baked {
     /// # Errors
     /// `Argument` for a table that is larger than this GPU's textures.
-    pub fn new(gpu: &Gpu, bake: &Bake) -> Result<Resources> {
+    pub fn new(gpu: &Gpu, bake: &Bake) -> Result<Baked> {
         use wgpu::TextureDimension::{D2, D3};
-        let device = &gpu.device;
         let tables = gpu.buffer(bytemuck::bytes_of(&bake.uniforms), wgpu::BufferUsages::UNIFORM);
-        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            ..Default::default()
-        });
         let volumes = [&bake.volume, &bake.single].map(|t| texture(gpu, t, D3));
         let planes = [&bake.depth, &bake.scatterers, &bake.irradiance, &bake.phase].map(|t| texture(gpu, t, D2));
         let mut views = Vec::new();
         for texture in volumes.into_iter().chain(planes) {
             views.push(texture?.create_view(&Default::default()));
         }
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("baked layout"),
             entries: &entries(),
         });
-        let mut entries = vec![
-            wgpu::BindGroupEntry { binding: 0, resource: tables.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&sampler) },
-        ];
-        for (k, view) in views.iter().enumerate() {
-            let resource = wgpu::BindingResource::TextureView(view);
-            entries.push(wgpu::BindGroupEntry { binding: k as u32 + 2, resource });
-        }
-        let descriptor =
-            wgpu::BindGroupDescriptor { label: Some("baked layout"), layout: &layout, entries: &entries };
-        let group = device.create_bind_group(&descriptor);
-        Ok(Resources { layout, group })
+        let slices = slices(gpu, bake);
+        let none = as_array(&texture(gpu, &Texels { size: [1, 1, 1], bits: vec![[0; 4]] }, D2)?);
+        let with = slices.as_ref().map_or_else(|| none.clone(), as_array);
+        let [group, bare] = [&with, &none].map(|last| bound(gpu, &layout, &tables, views.iter().chain([last])));
+        Ok(Baked { layout, group, bare, slices })
     }
+}
+
+fn as_array(texture: &wgpu::Texture) -> wgpu::TextureView {
+    let dimension = Some(wgpu::TextureViewDimension::D2Array);
+    texture.create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() })
+}
+
+/// Uniform, sampler, and the textures in the order of their bindings.
+fn bound<'a>(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    tables: &wgpu::Buffer,
+    views: impl Iterator<Item = &'a wgpu::TextureView>,
+) -> wgpu::BindGroup {
+    let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        ..Default::default()
+    });
+    let mut entries = vec![
+        wgpu::BindGroupEntry { binding: 0, resource: tables.as_entire_binding() },
+        wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&sampler) },
+    ];
+    for (k, view) in views.enumerate() {
+        let resource = wgpu::BindingResource::TextureView(view);
+        entries.push(wgpu::BindGroupEntry { binding: k as u32 + 2, resource });
+    }
+    let label = Some("baked layout");
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label, layout, entries: &entries })
+}
+
+/// Room for a frame's slices: azimuth, view, and a layer for the main table and each group (at least one).
+fn slices(gpu: &Gpu, bake: &Bake) -> Option<wgpu::Texture> {
+    if !gpu.device.features().contains(wgpu::Features::FLOAT32_FILTERABLE) {
+        return None;
+    }
+    let [volume, single] = [bake.uniforms.volume.size, bake.uniforms.single.size];
+    Some(gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("slices"),
+        size: wgpu::Extent3d {
+            width: volume[3].max(single[3]) as u32,
+            height: volume[1].max(single[1]) as u32,
+            depth_or_array_layers: 1 + (bake.uniforms.counts[0] as u32).max(1),
+        },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
+        view_formats: &[],
+    }))
 }
 
 /// What a march needs besides the layout.

@@ -1,12 +1,14 @@
 //! The window: events to controls, controls to frames.
 
 use crate::bake::{Bake, Layout};
+use crate::camera::Kind;
 use crate::controls::{Controls, Request, TITLE_KEYS};
 use crate::exposure::{self, factor};
-use crate::frame::{FrameUniform, Look, Painter, View};
+use crate::frame::{FrameUniform, View};
 use crate::gpu::{Gpu, failed};
 use crate::headless::{pixels, write_rgba};
 use crate::options::Options;
+use crate::painter::{Look, Painter};
 use crate::resources::Method;
 use crate::screen::Screen;
 use crate::target::SHOWN;
@@ -33,6 +35,7 @@ pub fn run(options: &Options, bake: Bake) -> Result<()> {
     let controls = Controls::new(&view, options.exposure, method, options.steps, bake.radii());
     let mut app = App {
         hand_filtered: options.hand_filtered,
+        relief: options.relief,
         size: options.size,
         written: written(&bake.folder),
         bake,
@@ -57,6 +60,7 @@ struct Shown {
 
 struct App {
     hand_filtered: bool,
+    relief: bool,
     size: [u32; 2],
     bake: Bake,
     controls: Controls,
@@ -76,8 +80,10 @@ fn written(folder: &Path) -> Option<SystemTime> {
 }
 
 impl App {
-    fn look(&self, format: wgpu::TextureFormat) -> Look {
-        Look { method: self.controls.method, hand_filtered: self.hand_filtered, format }
+    fn look(&self, format: wgpu::TextureFormat, size: [u32; 2]) -> Look {
+        let relief = self.relief && self.controls.camera.kind == Kind::Ground && !size.contains(&0);
+        let (method, hand_filtered) = (self.controls.method, self.hand_filtered);
+        Look { method, hand_filtered, format, relief: relief.then_some(size) }
     }
 
     fn open_window(&mut self, events: &ActiveEventLoop) -> Result<Shown> {
@@ -87,7 +93,7 @@ impl App {
             .with_inner_size(winit::dpi::PhysicalSize::new(width, height));
         let window = Arc::new(events.create_window(attributes).map_err(failed)?);
         let (gpu, screen) = Screen::new(window.clone())?;
-        let painter = Painter::new(&gpu, &self.bake, &self.look(screen.format()))?;
+        let painter = Painter::new(&gpu, &self.bake, &self.look(screen.format(), screen.size()))?;
         gpu.check()?;
         Ok(Shown { window, screen, gpu, painter })
     }
@@ -98,7 +104,7 @@ impl App {
             self.controls.method = Method::Table;
         }
         if let Some(mut shown) = self.shown.take() {
-            let look = self.look(shown.screen.format());
+            let look = self.look(shown.screen.format(), shown.screen.size());
             let made = Painter::new(&shown.gpu, &self.bake, &look);
             let made = made.map(|painter| shown.painter = painter);
             self.shown = Some(shown);
@@ -143,7 +149,7 @@ impl App {
         let c = &self.controls;
         let exposure = factor(c.exposure, &self.bake, &c.camera, aspect);
         let g = c.g.filter(|_| self.bake.layout == Layout::Elek2010);
-        View { camera: c.camera, size, exposure, tone_mapping: c.tone_mapping, g }
+        View { camera: c.camera, size, exposure, tone_mapping: c.tone_mapping, horizon_mended: true, g }
     }
 
     fn title(&self, view: &View, fps: f64) -> String {
@@ -177,10 +183,11 @@ impl App {
         let view = self.view(size);
         let title = self.title(&view, 1.0 / dt.max(1e-3));
         let uniform = FrameUniform::new(&self.bake, &view);
+        let bake = &self.bake;
         let Some(shown) = &mut self.shown else { return Ok(()) };
         shown.window.set_title(&title);
         let Shown { gpu, painter, .. } = &*shown;
-        shown.screen.show(gpu, |encoder, target| painter.draw(gpu, encoder, target, &uniform, None))?;
+        shown.screen.show(gpu, |encoder, target| painter.draw(gpu, bake, encoder, target, &uniform, None))?;
         shown.gpu.check()
     }
 
@@ -190,7 +197,7 @@ impl App {
         if size.contains(&0) {
             return Ok(());
         }
-        let bytes = pixels(&shown.gpu, &self.bake, &self.view(size), &self.look(SHOWN))?;
+        let bytes = pixels(&shown.gpu, &self.bake, &self.view(size), &self.look(SHOWN, size))?;
         let mut path = PathBuf::new();
         while path.as_os_str().is_empty() || path.exists() {
             self.shots += 1;
@@ -225,6 +232,9 @@ impl App {
             WindowEvent::Resized(size) => {
                 if let Some(shown) = &mut self.shown {
                     shown.screen.resize(&shown.gpu, [size.width, size.height]);
+                }
+                if self.relief {
+                    return self.rebuild();
                 }
             }
             WindowEvent::KeyboardInput { event, .. } => {

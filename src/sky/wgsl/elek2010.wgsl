@@ -22,8 +22,13 @@ fn elek2010_scattering(
         return vec3f(0.0);
     }
     let stored = fetch_4d(t.volume, scattering, filtering, volume_texel(t.volume, p), 0.0);
-    let light = decode(t.volume, stored);
     let sunlight = sunlight_at(t.depth, depth, filtering, p.altitude, p.mu_s);
+    return elek2010_light(t, stored, sunlight, phase);
+}
+
+// Light of a stored sample under sunlight of this transmittance.
+fn elek2010_light(t: Tables, stored: vec4f, sunlight: vec4f, phase: vec4f) -> vec3f {
+    let light = decode(t.volume, stored);
     return light.rgb / t.counts.w + light.a * max(rgb_of(t, sunlight * phase), vec3f(0.0));
 }
 

@@ -24,7 +24,7 @@ fn transmittance_to(p: Place, q: Place) -> vec4f {
 // difference. There the ray's mean light, which hardly changes along its first part, is a better guess: light that
 // fills the share of opacity that lies before B.
 fn light_between(p: Place, q: Place, through: vec4f) -> vec3f {
-    let all = scattered(p, frame.forward.w);
+    let all = scattered_here(p, frame.forward.w);
     let t = rgb_of(tables, through) / rgb_of(tables, vec4f(1.0));
     let difference = max(all - t * scattered(q, frame.forward.w), vec3f(0.0));
     let tau = depth_at(tables.depth, depth, filtering, p);

@@ -8,3 +8,7 @@
 @group(0) @binding(5) var scatterers: texture_2d<f32>;
 @group(0) @binding(6) var irradiance: texture_2d<f32>;
 @group(0) @binding(7) var phase: texture_2d<f32>;
+@group(0) @binding(8) var slices: texture_2d_array<f32>;
+
+// Whether slices are there and hold the observer's altitude and sun.
+override SLICED: bool = false;

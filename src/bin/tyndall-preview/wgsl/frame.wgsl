@@ -69,7 +69,7 @@ fn seen(d: vec3f) -> vec3f {
     if !p.inside {
         return rgb_of(tables, vec4f(star(d)));
     }
-    let light = scattered(p, frame.forward.w);
+    let light = scattered_here(p, frame.forward.w);
     if p.hits_ground {
         return light + ground_after(sun_at_ground(tables.volume, p), transmittance_of(p));
     }

@@ -21,6 +21,15 @@ fn scattered(p: Place, g: f32) -> vec3f {
     return rgb_of(tables, compact_scattering(tables, volume, single, depth, scatterers, phase, filtering, p));
 }
 
+// From the observer's own place.
+fn scattered_here(p: Place, g: f32) -> vec3f {
+    if SLICED {
+        let light = compact_scattering_sliced(tables, slices, depth, scatterers, phase, filtering, p);
+        return rgb_of(tables, light);
+    }
+    return scattered(p, g);
+}
+
 fn ground_after(mu_s: f32, through: vec4f) -> vec3f {
     return rgb_of(tables, through * compact_ground(tables, depth, irradiance, filtering, mu_s));
 }

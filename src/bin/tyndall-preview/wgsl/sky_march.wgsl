@@ -79,6 +79,10 @@ fn scattered(p: Place, g: f32) -> vec3f {
     return rgb_of(tables, light);
 }
 
+fn scattered_here(p: Place, g: f32) -> vec3f {
+    return scattered(p, g);
+}
+
 fn transmittance_of(p: Place) -> vec4f {
     return exp(-marched);
 }
