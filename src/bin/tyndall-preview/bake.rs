@@ -140,6 +140,10 @@ impl Reader<'_> {
             uniforms.ground_albedo = four(albedo);
         }
         let (single, groups) = self.stacked(&mut uniforms)?;
+        if groups > 0 && (uniforms.phase.log[0] != 1.0 || uniforms.single.log[0] != 1.0) {
+            let reason = "bake.json: tables.phase and tables.single_*: must be stored as logarithms";
+            return Err(Error::file(self.folder, reason));
+        }
         let has = |name: &str| self.table(name).is_some();
         let row = constant("elek2010_aerosol_phase_row").unwrap_or(0.0);
         let row = if has("phase") { row } else { -1.0 };

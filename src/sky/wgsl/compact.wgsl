@@ -1,9 +1,11 @@
 // Look-ups in the layout `compact`; wants shell.wgsl, where the conventions stand.
 
-// Phase function times mean source along the ray of what group number `group` scatters once.
+// Phase function times mean source along the ray of what group number `group` scatters once. Both are stored as
+// logarithms in every bake of this layout, so that one exponential does for their product.
 fn compact_group(t: Tables, stored: vec4f, phase: texture_2d<f32>, filtering: sampler, nu: f32, group: i32) -> vec4f {
-    let source = t.group_scale[group] * exp(stored + t.group_offset[group]);
-    return select(source, vec4f(0.0), stored <= t.single.floor) * phase_at(t.phase, phase, filtering, nu, f32(group));
+    let p = fetch_phase(t.phase, phase, filtering, nu, f32(group));
+    let product = t.group_scale[group] * t.phase.scale * exp(stored + p + (t.group_offset[group] + t.phase.offset));
+    return select(product, vec4f(0.0), (stored <= t.single.floor) | (p <= t.phase.floor));
 }
 
 // Light of a mean source that fills a ray; what only absorbs adds nothing, where there is such.

@@ -64,6 +64,12 @@ struct Place {
     hits_ground: bool,
     // False where the ray misses the shell.
     inside: bool,
+    // Of the ray to the ground or to the top, m.
+    length: f32,
+    // The paper's V within its half, 0 nadir or zenith, 1 the horizon.
+    share: f32,
+    // Half of 1 plus the cosine of the azimuth between view and sun.
+    azimuth: f32,
 }
 
 fn decode(t: Table, stored: vec4f) -> vec4f {
@@ -105,8 +111,8 @@ fn altitude_coordinate(t: Table, altitude: f32) -> f32 {
     return (1.0 + t.bends.x) * u / (1.0 + t.bends.x * u);
 }
 
-// 0..1 within a half of the view axis: 0 nadir or zenith, 1 the horizon.
-fn view_coordinate(t: Table, altitude: f32, mu: f32, ground: bool) -> f32 {
+// The paper's V, 0..1 within a half, of a ray of this length.
+fn view_share(t: Table, altitude: f32, mu: f32, ground: bool, length: f32) -> f32 {
     let z1 = horizon_distance(t, altitude);
     let height = shell_height(t);
     let shortest = select(height - altitude, altitude, ground);
@@ -114,9 +120,25 @@ fn view_coordinate(t: Table, altitude: f32, mu: f32, ground: bool) -> f32 {
     if longest <= shortest {
         return select(0.0, 1.0, mu >= 0.0);
     }
-    let v = clamp((ray_length(t, altitude, mu, ground) - shortest) / (longest - shortest), 0.0, 1.0);
-    let x = pow(v, 1.0 / t.bends.y);
-    return select(1.0 - pow(1.0 - x, 1.0 / t.bends.z), x, ground);
+    return clamp((length - shortest) / (longest - shortest), 0.0, 1.0);
+}
+
+fn azimuth_share(mu: f32, mu_s: f32, nu: f32) -> f32 {
+    let sines = sqrt(max((1.0 - mu) * (1.0 + mu) * (1.0 - mu_s) * (1.0 + mu_s), 0.0));
+    return 0.5 + 0.5 * select(1.0, clamp((nu - mu * mu_s) / sines, -1.0, 1.0), sines > 0.0);
+}
+
+// A view inside the shell, with what all tables want of it. All tables of a bake have the same shell.
+fn place(t: Table, altitude: f32, mu: f32, mu_s: f32, nu: f32, ground: bool, inside: bool) -> Place {
+    let length = ray_length(t, altitude, mu, ground);
+    let share = view_share(t, altitude, mu, ground, length);
+    return Place(altitude, mu, mu_s, nu, ground, inside, length, share, azimuth_share(mu, mu_s, nu));
+}
+
+// 0..1 within a half of the view axis: 0 nadir or zenith, 1 the horizon.
+fn view_coordinate(t: Table, p: Place) -> f32 {
+    let x = pow(p.share, 1.0 / t.bends.y);
+    return select(1.0 - pow(1.0 - x, 1.0 / t.bends.z), x, p.hits_ground);
 }
 
 // The bent cosine that the sun axis is even in.
@@ -147,7 +169,7 @@ fn texel(x: f32, n: f32) -> f32 {
 
 fn view_texel(t: Table, p: Place) -> f32 {
     let half = 0.5 * t.size.y;
-    return texel(view_coordinate(t, p.altitude, p.mu, p.hits_ground), half) + select(half, 0.0, p.hits_ground);
+    return texel(view_coordinate(t, p), half) + select(half, 0.0, p.hits_ground);
 }
 
 // Stored sample at a position in texels.
@@ -183,14 +205,9 @@ fn fetch_volume(texture: texture_3d<f32>, filtering: sampler, at: vec3f) -> vec4
     return mix(fetch_slice(texture, i.xy, j.xy, w.xy, i.z), fetch_slice(texture, i.xy, j.xy, w.xy, j.z), w.z);
 }
 
-fn cos_azimuth(p: Place) -> f32 {
-    let sines = sqrt(max((1.0 - p.mu) * (1.0 + p.mu) * (1.0 - p.mu_s) * (1.0 + p.mu_s), 0.0));
-    return select(1.0, clamp((p.nu - p.mu * p.mu_s) / sines, -1.0, 1.0), sines > 0.0);
-}
-
 // Where a place lies in a 4D table: x, y, z in the slices of the lower azimuth, and the share of the next azimuth.
 fn volume_texel(t: Table, p: Place) -> vec4f {
-    let azimuth = texel(0.5 * (1.0 + cos_azimuth(p)), t.size.w);
+    let azimuth = texel(p.azimuth, t.size.w);
     let lower = min(floor(azimuth), t.size.w - 2.0);
     let sun = texel(sun_coordinate(t, p.mu_s), t.size.z);
     let x = texel(altitude_coordinate(t, p.altitude), t.size.x);
@@ -209,7 +226,7 @@ fn fetch_4d(t: Table, texture: texture_3d<f32>, filtering: sampler, at: vec4f, g
 fn depth_at(t: Table, texture: texture_2d<f32>, filtering: sampler, p: Place) -> vec4f {
     let at = vec2f(texel(altitude_coordinate(t, p.altitude), t.size.x), view_texel(t, p));
     let stored = fetch_plane(texture, filtering, at);
-    return decode(t, stored) * select(1.0, ray_length(t, p.altitude, p.mu, p.hits_ground), t.radii.w > 0.5);
+    return decode(t, stored) * select(1.0, p.length, t.radii.w > 0.5);
 }
 
 // Transmittance from a place towards the sun; 0 behind the planet.
@@ -217,13 +234,17 @@ fn sunlight_at(t: Table, texture: texture_2d<f32>, filtering: sampler, altitude:
     if hits_ground(t, altitude, mu_s) {
         return vec4f(0.0);
     }
-    return exp(-depth_at(t, texture, filtering, Place(altitude, mu_s, mu_s, 1.0, false, true)));
+    return exp(-depth_at(t, texture, filtering, place(t, altitude, mu_s, mu_s, 1.0, false, true)));
 }
 
-// A row of the phase table: 1/sr at the cosine of the scattering angle.
+// Stored sample of a row of the phase table at the cosine of the scattering angle.
+fn fetch_phase(t: Table, texture: texture_2d<f32>, filtering: sampler, nu: f32, row: f32) -> vec4f {
+    return fetch_plane(texture, filtering, vec2f(texel(sqrt(max(0.5 * (1.0 - nu), 0.0)), t.size.x), row));
+}
+
+// Phase function, 1/sr.
 fn phase_at(t: Table, texture: texture_2d<f32>, filtering: sampler, nu: f32, row: f32) -> vec4f {
-    let at = vec2f(texel(sqrt(max(0.5 * (1.0 - nu), 0.0)), t.size.x), row);
-    return decode(t, fetch_plane(texture, filtering, at));
+    return decode(t, fetch_phase(t, texture, filtering, nu, row));
 }
 
 // Diffuse irradiance of the ground.
@@ -249,18 +270,17 @@ fn opacity(x: vec4f) -> vec4f {
 fn enter(t: Table, altitude: f32, mu: f32, mu_s: f32, nu: f32) -> Place {
     let height = shell_height(t);
     if altitude <= height {
-        return Place(altitude, mu, mu_s, nu, hits_ground(t, altitude, mu), true);
+        return place(t, altitude, mu, mu_s, nu, hits_ground(t, altitude, mu), true);
     }
     let r = t.radii.x + altitude;
     let top = t.radii.y;
     let across = r * sqrt(max((1.0 - mu) * (1.0 + mu), 0.0));
     let along = -sqrt(max((top - across) * (top + across), 0.0));
     let mu_s_there = clamp((r * mu_s + (along - r * mu) * nu) / top, -1.0, 1.0);
-    return Place(height, along / top, mu_s_there, nu, across <= t.radii.x, mu < 0.0 && across < top);
+    return place(t, height, along / top, mu_s_there, nu, across <= t.radii.x, mu < 0.0 && across < top);
 }
 
-// Cosine of the sun's zenith angle where a ray meets the ground.
+// Cosine of the sun's zenith angle where a ray that hits the ground meets it.
 fn sun_at_ground(t: Table, p: Place) -> f32 {
-    let length = ray_length(t, p.altitude, p.mu, true);
-    return clamp(((t.radii.x + p.altitude) * p.mu_s + length * p.nu) / t.radii.x, -1.0, 1.0);
+    return clamp(((t.radii.x + p.altitude) * p.mu_s + p.length * p.nu) / t.radii.x, -1.0, 1.0);
 }

@@ -28,6 +28,6 @@ fn slice_texel(t: Table, texture: texture_3d<f32>, altitude: f32, mu_s: f32, at:
 
 // Stored sample of a view of the slice's altitude and sun.
 fn fetch_sliced(t: Table, slices: texture_2d_array<f32>, filtering: sampler, p: Place, layer: i32) -> vec4f {
-    let at = vec2f(texel(0.5 * (1.0 + cos_azimuth(p)), t.size.w), view_texel(t, p));
+    let at = vec2f(texel(p.azimuth, t.size.w), view_texel(t, p));
     return textureSampleLevel(slices, filtering, (at + 0.5) / vec2f(textureDimensions(slices)), layer, 0.0);
 }

@@ -11,7 +11,7 @@ fn along_ray(p: Place, s: f32) -> Place {
     let altitude = clamp(p.altitude + rise / (there + r), 0.0, shell_height(tables.volume));
     let mu = clamp((r * p.mu + s) / there, -1.0, 1.0);
     let mu_s = clamp((r * p.mu_s + s * p.nu) / there, -1.0, 1.0);
-    return Place(altitude, mu, mu_s, p.nu, p.hits_ground, true);
+    return place(tables.volume, altitude, mu, mu_s, p.nu, p.hits_ground, true);
 }
 
 // Transmittance of the first `s` of a ray.

@@ -31,7 +31,7 @@ fn altitude_along(altitude: f32, mu: f32, s: f32) -> f32 {
 fn depth_to_sun(altitude: f32, mu_s: f32) -> vec4f {
     let length = ray_length(tables.volume, altitude, mu_s, false);
     if march.steps.y < 0.5 {
-        return depth_at(tables.depth, depth, filtering, Place(altitude, mu_s, mu_s, 1.0, false, true));
+        return depth_at(tables.depth, depth, filtering, place(tables.depth, altitude, mu_s, mu_s, 1.0, false, true));
     }
     let step = length / march.steps.y;
     var sum = vec4f(0.0);
