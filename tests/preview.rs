@@ -9,4 +9,5 @@ mod preview {
     mod refused;
     mod run;
     mod seams;
+    mod window;
 }

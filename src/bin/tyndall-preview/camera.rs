@@ -56,6 +56,8 @@ impl Camera {
         let level = dvec3(-sin_h, 0.0, cos_h);
         let forward = level * cos_p + DVec3::Y * sin_p;
         let up = DVec3::Y * cos_p - level * sin_p;
+        // Of the sky above, the heading is at the top.
+        let up = if self.kind == Kind::Fisheye { -up } else { up };
         [forward.cross(up), up, forward]
     }
 
@@ -119,6 +121,8 @@ mod tests {
         assert!((camera.direction(0.0, 0.0, 2.0).unwrap().y - 1.0).abs() < 1e-12);
         assert!(camera.direction(0.5, 0.0, 2.0).unwrap().y.abs() < 1e-9);
         assert_eq!(camera.direction(0.6, 0.0, 2.0), None);
+        // The star's azimuth is at the top.
+        assert!(camera.direction(0.0, 0.9, 2.0).unwrap().dot(camera.sun()) > 0.0);
     }
 
     /// From two radii up, the planet's limb lies inside the picture and its disc fills most of it.

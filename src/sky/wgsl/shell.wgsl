@@ -239,7 +239,12 @@ fn sunlight_at(t: Table, texture: texture_2d<f32>, filtering: sampler, altitude:
 
 // Stored sample of a row of the phase table at the cosine of the scattering angle.
 fn fetch_phase(t: Table, texture: texture_2d<f32>, filtering: sampler, nu: f32, row: f32) -> vec4f {
-    return fetch_plane(texture, filtering, vec2f(texel(sqrt(max(0.5 * (1.0 - nu), 0.0)), t.size.x), row));
+    // Two texels, weighed by hand: rows are not filtered.
+    let x = texel(sqrt(max(0.5 * (1.0 - nu), 0.0)), t.size.x);
+    let low = min(i32(x), i32(t.size.x) - 2);
+    let a = textureLoad(texture, vec2i(low, i32(row)), 0);
+    let b = textureLoad(texture, vec2i(low + 1, i32(row)), 0);
+    return mix(a, b, x - f32(low));
 }
 
 // Phase function, 1/sr.
