@@ -26,9 +26,12 @@ fn views(count: u32, height: f64) -> Vec<[f64; 4]> {
 fn worst(a: &[Vec<f64>], b: &[Vec<f64>]) -> (f64, usize) {
     let brightest = b.iter().flatten().fold(0.0, |m: f64, v| m.max(*v));
     let of_view = |(a, b): (&Vec<f64>, &Vec<f64>)| {
-        // A millionth of a millionth of the brightest light is no light.
-        let scale = b.iter().fold(1e-12 * brightest, |m: f64, v| m.max(v.abs()));
-        a.iter().zip(b).map(|(a, b)| (a - b).abs() / scale).fold(0.0, |m, e| if e > m || e.is_nan() { e } else { m })
+        // Less than the night glows by itself (2e-8 of the day) is no light; there logarithms fall by twenty a texel.
+        let scale = b.iter().fold(1e-8 * brightest, |m: f64, v| m.max(v.abs()));
+        a.iter()
+            .zip(b)
+            .map(|(a, b)| (a - b).abs() / scale)
+            .fold(0.0, |m, e| if e > m || e.is_nan() { e } else { m })
     };
     let errors: Vec<f64> = a.iter().zip(b).map(of_view).collect();
     let k = (0..errors.len()).max_by(|i, j| errors[*i].total_cmp(&errors[*j])).unwrap();

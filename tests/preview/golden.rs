@@ -47,8 +47,12 @@ fn blocks(bytes: &[u8]) -> Vec<f64> {
 /// white.
 fn difference(a: &[u8], b: &[u8]) -> f64 {
     let (a, b) = (blocks(a), blocks(b));
-    let pairs: Vec<f64> =
-        a.iter().zip(&b).filter(|(_, b)| (0.02..0.9).contains(*b)).map(|(a, b)| (a / b - 1.0) * (a / b - 1.0)).collect();
+    let pairs: Vec<f64> = a
+        .iter()
+        .zip(&b)
+        .filter(|(_, b)| (0.02..0.9).contains(*b))
+        .map(|(a, b)| (a / b - 1.0) * (a / b - 1.0))
+        .collect();
     assert!(pairs.len() > 30, "{} blocks are neither black nor white", pairs.len());
     (pairs.iter().sum::<f64>() / pairs.len() as f64).sqrt()
 }

@@ -5,7 +5,8 @@ use std::path::Path;
 
 /// The names that follow each `tyndall::` in a source.
 fn used(source: &str) -> Vec<String> {
-    let name = |text: &str| text.trim().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
+    let name =
+        |text: &str| text.trim().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
     source
         .split("tyndall::")
         .skip(1)

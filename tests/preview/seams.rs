@@ -10,7 +10,8 @@ fn steps(bake: &str, layout: &str, view: impl Fn(f64) -> [f64; 4]) -> (f64, f64)
     let light = shader(bake, layout, &views, &[]);
     let brightest = light.iter().flatten().fold(0.0, |m: f64, v| m.max(*v));
     assert!(brightest > 0.0 && light.iter().flatten().all(|v| v.is_finite() && *v >= 0.0));
-    let change = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs() / brightest).fold(0.0, f64::max);
+    let change =
+        |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs() / brightest).fold(0.0, f64::max);
     let largest = light.windows(2).map(|w| change(&w[0], &w[1])).fold(0.0, f64::max);
     (largest, change(&light[0], &light[STEPS]))
 }
@@ -40,5 +41,66 @@ fn zenith_nadir_and_azimuths_have_no_seam() {
             println!("{layout} {name}: step {step:.1e} of {all:.1e}");
             assert!(step < 1e-3, "{layout} {name}: a step of {step}");
         }
+    }
+}
+
+/// From above the shell to inside it nothing happens to a view: 5 m to either side of the top, on planets of two sizes.
+#[test]
+fn entering_the_shell_is_no_step() {
+    if !gpu() {
+        return;
+    }
+    for (bake, height) in
+        [(earth(), 66e3), (mars(), constant(mars(), "top_radius_m") - constant(mars(), "ground_radius_m"))]
+    {
+        for layout in ["compact", "elek2010"] {
+            let (step, all) = steps(bake, layout, |t| [height + 5.0 * t, -0.3, 0.4, 60.0]);
+            println!("{bake} {layout}: step {step:.1e} of {all:.1e}");
+            assert!(step < 1e-3, "{bake} {layout}: a step of {step}");
+        }
+    }
+}
+
+/// Across the horizon seen from 10 km, 350 km away: through that much air neither the ground before it nor the air
+/// behind it sends much, so that the halves of the view axis meet within 1 %, though nothing is filtered across them;
+/// to either side light is smooth.
+#[test]
+fn the_horizon_is_no_edge() {
+    if !gpu() {
+        return;
+    }
+    let (ground, altitude) = (6.371e6, 1e4);
+    let horizon: f64 = -libm::sqrt(altitude * (2.0 * ground + altitude)) / (ground + altitude);
+    for layout in ["compact", "elek2010"] {
+        for (name, low, high, bound) in
+            [("below", -4e-4, -1e-6, 5e-3), ("above", 1e-6, 4e-4, 5e-3), ("across", -2e-5, 2e-5, 0.01)]
+        {
+            let walk = |t: f64| [altitude, horizon + low + 0.5 * (1.0 + t) * (high - low), 0.5, 70.0];
+            let (step, all) = steps(earth(), layout, walk);
+            println!("{layout} horizon {name}: step {step:.1e} of {all:.1e}");
+            assert!(step < bound, "{layout} {name}: a step of {step}");
+        }
+    }
+}
+
+/// The sun axis ends where nothing is lit: the last light before its end is less than a millionth of the day's, beyond
+/// it there is none. At its other end the sun passes the zenith.
+#[test]
+fn the_ends_of_the_sun_axis_are_no_edges() {
+    if !gpu() {
+        return;
+    }
+    for layout in ["compact", "elek2010"] {
+        let day = shader(earth(), layout, &[[0.0, 1.0, 0.5, 0.0]], &[]);
+        let brightest = |light: &[Vec<f64>]| light.iter().flatten().fold(0.0, |m: f64, v| m.max(*v));
+        let lowest = -0.2857142857142857;
+        let dusk: Vec<[f64; 4]> = (0..20).map(|k| [0.0, 0.3, lowest + 1e-5 * f64::from(k), 0.0]).collect();
+        let night: Vec<[f64; 4]> = (1..20).map(|k| [0.0, 0.3, lowest - 1e-5 * f64::from(k), 0.0]).collect();
+        assert!(brightest(&shader(earth(), layout, &dusk, &[])) < 1e-6 * brightest(&day), "{layout}");
+        assert_eq!(brightest(&shader(earth(), layout, &night, &[])), 0.0, "{layout}");
+        let noon = |t: f64| [3e3, 0.2, libm::cos(0.01 * t), if t < 0.0 { 180.0 } else { 0.0 }];
+        let (step, all) = steps(earth(), layout, noon);
+        println!("{layout} noon: step {step:.1e} of {all:.1e}");
+        assert!(step < 2e-3, "{layout}: a step of {step}");
     }
 }

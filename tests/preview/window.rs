@@ -20,7 +20,9 @@ impl Display {
             std::env::split_paths(&paths).any(|folder| folder.join(program).is_file())
         };
         if !(has("Xvfb") && has("xdotool")) {
-            eprintln!("SKIPPED: the window wants Xvfb and xdotool (Debian: xvfb xdotool libxkbcommon-x11-0 libxcursor1 libxi6)");
+            eprintln!(
+                "SKIPPED: the window wants Xvfb and xdotool (Debian: xvfb xdotool libxkbcommon-x11-0 libxcursor1 libxi6)"
+            );
             return None;
         }
         let mut server = Command::new("Xvfb")

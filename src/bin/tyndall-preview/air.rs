@@ -68,7 +68,11 @@ fn density(profile: &Value, altitude: f64) -> Option<f64> {
         "layer" => Some(f64::from(u8::from(altitude >= number("bottom")? && altitude <= number("top")?))),
         "tent" => {
             let (bottom, centre, top) = (number("bottom")?, number("centre")?, number("top")?);
-            let rise = if altitude < centre { (altitude - bottom) / (centre - bottom) } else { (top - altitude) / (top - centre) };
+            let rise = if altitude < centre {
+                (altitude - bottom) / (centre - bottom)
+            } else {
+                (top - altitude) / (top - centre)
+            };
             Some(rise.clamp(0.0, 1.0))
         }
         "linear" => between(&profile["nodes"], altitude, |a, b, t| a + (b - a) * t),

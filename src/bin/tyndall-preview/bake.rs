@@ -147,8 +147,7 @@ impl Reader<'_> {
         let has = |name: &str| self.table(name).is_some();
         let row = constant("elek2010_aerosol_phase_row").unwrap_or(0.0);
         let row = if has("phase") { row } else { -1.0 };
-        uniforms.counts =
-            four(&[groups as f64, f64::from(u8::from(has("scatterers"))), row, illuminance]);
+        uniforms.counts = four(&[groups as f64, f64::from(u8::from(has("scatterers"))), row, illuminance]);
         Ok(Bake {
             folder: self.folder.to_path_buf(),
             manifest: self.manifest.clone(),
@@ -191,7 +190,9 @@ impl Reader<'_> {
         let refuse = |reason: String| Err(Error::file(self.folder, reason));
         if names.len() > MOST_GROUPS {
             let n = names.len();
-            return refuse(format!("{n} tables of single scattering: the preview draws {MOST_GROUPS} at most"));
+            return refuse(format!(
+                "{n} tables of single scattering: the preview draws {MOST_GROUPS} at most"
+            ));
         }
         let mut stack = Texels::none();
         for (k, name) in names.iter().enumerate() {

@@ -26,7 +26,13 @@ pub fn run(gpu: &Gpu, bake: &Bake, options: &Options) -> Result<()> {
     let view = options.view(bake)?;
     let [width, height] = view.size;
     let stopwatch = Stopwatch::new(gpu);
-    println!("{}, {}, {width}x{height}, {} frames, {}", gpu.name(), bake.layout.name(), options.frames, stopwatch.about());
+    println!(
+        "{}, {}, {width}x{height}, {} frames, {}",
+        gpu.name(),
+        bake.layout.name(),
+        options.frames,
+        stopwatch.about()
+    );
     println!("{:<22} {:>9} {:>9} {:>9}   ms a frame", "method", "min", "median", "max");
     let table = timed(gpu, bake, options, &view, &stopwatch, Method::Table, "table")?;
     println!("textures: {:.1} MB", bake.texture_bytes() as f64 * 1e-6);

@@ -57,7 +57,13 @@ const DAY: f64 = 24.0;
 const NOON: f64 = 70.0;
 
 impl Controls {
-    pub fn new(view: &crate::frame::View, exposure: Exposure, method: Method, steps: [u32; 2], radii: [f64; 2]) -> Self {
+    pub fn new(
+        view: &crate::frame::View,
+        exposure: Exposure,
+        method: Method,
+        steps: [u32; 2],
+        radii: [f64; 2],
+    ) -> Self {
         Controls {
             camera: view.camera,
             exposure,
@@ -131,7 +137,11 @@ impl Controls {
             Kind::Fisheye => Kind::Ground,
         };
         let (heading, sun_elevation) = (self.camera.heading, self.camera.sun_elevation);
-        self.camera = crate::camera::Camera { heading, sun_elevation, ..crate::camera::Camera::usual(kind, self.radii) };
+        self.camera = crate::camera::Camera {
+            heading,
+            sun_elevation,
+            ..crate::camera::Camera::usual(kind, self.radii)
+        };
     }
 
     /// When in the day of the animation the star stands where it is, before noon.

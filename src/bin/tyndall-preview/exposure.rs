@@ -26,7 +26,8 @@ impl std::str::FromStr for Exposure {
     /// `auto`, `auto+1.5`, `auto-2` or a number.
     fn from_str(text: &str) -> Result<Self, String> {
         let number = |text: &str| {
-            let value: f64 = text.parse().map_err(|_| "not auto, auto+STOPS or a number (EV100)".to_string())?;
+            let value: f64 =
+                text.parse().map_err(|_| "not auto, auto+STOPS or a number (EV100)".to_string())?;
             if value.abs() <= 60.0 { Ok(value) } else { Err("must be between -60 and 60".to_string()) }
         };
         match text.strip_prefix("auto") {

@@ -72,7 +72,8 @@ impl FrameUniform {
             forward: with(forward, view.g.unwrap_or(-2.0)),
             sun: with(camera.sun(), radius),
             observer: [camera.altitude, view.exposure, tone, limb].map(|v| v as f32),
-            picture: [width.into(), height.into(), camera.pixel_angle(width, height), 0.0].map(|v: f64| v as f32),
+            picture: [width.into(), height.into(), camera.pixel_angle(width, height), 0.0]
+                .map(|v: f64| v as f32),
             display: [0, 1, 2].map(|k| with(display.row(k), f64::from(u8::from(view.horizon_mended)))),
         }
     }

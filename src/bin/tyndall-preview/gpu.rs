@@ -27,16 +27,14 @@ impl Gpu {
     ///
     /// # Errors
     /// `Machine` where there is none or it cannot be opened.
-    pub fn new(
-        instance: wgpu::Instance,
-        surface: Option<&wgpu::Surface<'_>>,
-    ) -> Result<Gpu> {
+    pub fn new(instance: wgpu::Instance, surface: Option<&wgpu::Surface<'_>>) -> Result<Gpu> {
         let options = wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
             compatible_surface: surface,
             ..Default::default()
         };
-        let adapter = pollster::block_on(instance.request_adapter(&options)).map_err(|_| failed(NO_ADAPTER))?;
+        let adapter =
+            pollster::block_on(instance.request_adapter(&options)).map_err(|_| failed(NO_ADAPTER))?;
         let wanted = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::FLOAT32_FILTERABLE;
         let descriptor = wgpu::DeviceDescriptor {
             required_features: adapter.features() & wanted,

@@ -12,7 +12,9 @@ use tyndall::{Error, Result};
 /// Draws a bake: in a window, or with --headless to a PNG.
 #[derive(clap::Parser)]
 #[command(name = "tyndall-preview", version)]
-#[command(before_help = "Example: tyndall bake earth && tyndall-preview out/earth --headless --out sky.png --sun 5")]
+#[command(
+    before_help = "Example: tyndall bake earth && tyndall-preview out/earth --headless --out sky.png --sun 5"
+)]
 #[command(after_help = crate::controls::HELP)]
 pub struct Options {
     /// Folder of a bake, or its bake.json
@@ -29,7 +31,7 @@ pub struct Options {
     #[arg(long, default_value = "ground")]
     pub camera: Kind,
     /// Height of the observer over the ground, m
-    #[arg(long, value_name = "M", value_parser = altitude)]
+    #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = altitude)]
     pub altitude: Option<f64>,
     /// Elevation of the star at the observer, degrees
     #[arg(long, value_name = "DEGREES", default_value_t = 30.0, allow_hyphen_values = true, value_parser = angle)]
@@ -166,6 +168,13 @@ impl Options {
         let aspect = f64::from(self.size[0]) / f64::from(self.size[1]);
         let exposure = factor(self.exposure, bake, &camera, aspect);
         let horizon_mended = !self.bare_difference;
-        Ok(View { camera, size: self.size, exposure, tone_mapping: self.tone_mapping, horizon_mended, g: self.g })
+        Ok(View {
+            camera,
+            size: self.size,
+            exposure,
+            tone_mapping: self.tone_mapping,
+            horizon_mended,
+            g: self.g,
+        })
     }
 }

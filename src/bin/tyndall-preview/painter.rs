@@ -89,7 +89,8 @@ impl Painter {
         if let Some(relief) = &self.relief {
             relief.draw(encoder, &self.baked.bare, &self.group);
         }
-        let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store };
+        let ops =
+            wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store };
         let colour =
             wgpu::RenderPassColorAttachment { view: target, depth_slice: None, resolve_target: None, ops };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

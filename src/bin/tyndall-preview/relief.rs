@@ -25,7 +25,13 @@ fn triangles() -> Vec<u32> {
 }
 
 impl Relief {
-    pub fn new(gpu: &Gpu, bake: &Bake, baked: &Baked, frame: &wgpu::BindGroupLayout, size: [u32; 2]) -> Relief {
+    pub fn new(
+        gpu: &Gpu,
+        bake: &Bake,
+        baked: &Baked,
+        frame: &wgpu::BindGroupLayout,
+        size: [u32; 2],
+    ) -> Relief {
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("depth"),
             size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },

@@ -99,7 +99,8 @@ impl Baked {
         use wgpu::TextureDimension::{D2, D3};
         let tables = gpu.buffer(bytemuck::bytes_of(&bake.uniforms), wgpu::BufferUsages::UNIFORM);
         let volumes = [&bake.volume, &bake.single].map(|t| texture(gpu, t, D3));
-        let planes = [&bake.depth, &bake.scatterers, &bake.irradiance, &bake.phase].map(|t| texture(gpu, t, D2));
+        let planes =
+            [&bake.depth, &bake.scatterers, &bake.irradiance, &bake.phase].map(|t| texture(gpu, t, D2));
         let mut views = Vec::new();
         for texture in volumes.into_iter().chain(planes) {
             views.push(texture?.create_view(&Default::default()));
@@ -111,7 +112,8 @@ impl Baked {
         let slices = slices(gpu, bake);
         let none = as_array(&texture(gpu, &Texels { size: [1, 1, 1], bits: vec![[0; 4]] }, D2)?);
         let with = slices.as_ref().map_or_else(|| none.clone(), as_array);
-        let [group, bare] = [&with, &none].map(|last| bound(gpu, &layout, &tables, views.iter().chain([last])));
+        let [group, bare] =
+            [&with, &none].map(|last| bound(gpu, &layout, &tables, views.iter().chain([last])));
         Ok(Baked { layout, group, bare, slices })
     }
 }
@@ -203,7 +205,9 @@ fn texture(gpu: &Gpu, texels: &Texels, dimension: wgpu::TextureDimension) -> Res
     let [width, height, slices] = texels.size;
     if texels.size.iter().any(|&n| n > most as usize) {
         let size = format!("{width}x{height}x{slices}");
-        return Err(Error::Argument(format!("a table of {size} texels: this GPU takes {most} along an axis")));
+        return Err(Error::Argument(format!(
+            "a table of {size} texels: this GPU takes {most} along an axis"
+        )));
     }
     let descriptor = wgpu::TextureDescriptor {
         label: None,

@@ -70,7 +70,14 @@ impl Slicer {
     }
 
     /// Records the pass that fills the slices for an altitude and a cosine of the sun's zenith angle.
-    pub fn fill(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, baked: &Baked, altitude: f32, mu_s: f32) {
+    pub fn fill(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        baked: &Baked,
+        altitude: f32,
+        mu_s: f32,
+    ) {
         gpu.queue.write_buffer(&self.here, 0, bytemuck::bytes_of(&[altitude, mu_s, 0.0, 0.0]));
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_pipeline(&self.pipeline);

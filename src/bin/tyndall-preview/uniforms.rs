@@ -47,8 +47,7 @@ impl TableUniform {
         let constant = |name: &str| table.axes.iter().find_map(|a| a.constants.get(name)).copied();
         let number = |name: &str, without: f64| constant(name).unwrap_or(without) as f32;
         let over_length = table.channels.iter().any(|c| c.unit == "1/m");
-        out.radii =
-            [ground as f32, top as f32, number("mu_s_min", 0.0), f32::from(u8::from(over_length))];
+        out.radii = [ground as f32, top as f32, number("mu_s_min", 0.0), f32::from(u8::from(over_length))];
         let kind = match (constant("shift"), constant("centre")) {
             (Some(_), _) => 1.0,
             (_, Some(_)) => 2.0,
