@@ -4,6 +4,9 @@ use super::run::*;
 
 const STEPS: usize = 200;
 
+/// A view at each place of a walk, -1 to 1.
+type Walk<'a> = &'a dyn Fn(f64) -> [f64; 4];
+
 /// The largest change of a step over the brightest light of the walk, and the change from end to end.
 fn steps(bake: &str, layout: &str, view: impl Fn(f64) -> [f64; 4]) -> (f64, f64) {
     let views: Vec<[f64; 4]> = (0..=STEPS).map(|k| view(2.0 * k as f64 / STEPS as f64 - 1.0)).collect();
@@ -30,7 +33,7 @@ fn zenith_nadir_and_azimuths_have_no_seam() {
         return;
     }
     for layout in ["compact", "elek2010"] {
-        let walks: [(&str, &dyn Fn(f64) -> [f64; 4]); 4] = [
+        let walks: [(&str, Walk); 4] = [
             ("zenith", &|t| over_the_pole(3e3, 1.0, 0.5 * t)),
             ("nadir", &|t| over_the_pole(3e4, -1.0, 0.5 * t)),
             ("azimuth 0", &|t| [3e3, 0.1, 0.6, 0.5 * t]),
