@@ -33,11 +33,11 @@ pub fn preview(arguments: &[&str]) -> Ran {
 }
 
 /// Tables coarse enough for a bake of a second, each axis of another size so that none can stand for another.
-fn bake(preset: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("preview");
-    let line = "--quiet --wavelengths 5 --orders 3 --size elek2010=12x32x16x5 --size compact=9x20x18x5 \
+fn bake(preset: &str, orders: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("preview-{orders}"));
+    let line = "--quiet --wavelengths 5 --size elek2010=12x32x16x5 --size compact=9x20x18x5 \
                 --size compact-single=10x24x20x6 --out";
-    let mut arguments = vec!["bake", preset];
+    let mut arguments = vec!["bake", preset, "--orders", orders];
     arguments.extend(line.split_whitespace());
     arguments.push(folder.to_str().unwrap());
     let done = tyndall(&arguments);
@@ -48,13 +48,19 @@ fn bake(preset: &str) -> PathBuf {
 /// A bake of `earth`: two groups that scatter, one that only absorbs.
 pub fn earth() -> &'static str {
     static EARTH: OnceLock<PathBuf> = OnceLock::new();
-    EARTH.get_or_init(|| bake("earth")).to_str().unwrap()
+    EARTH.get_or_init(|| bake("earth", "3")).to_str().unwrap()
+}
+
+/// `earth` with light scattered once.
+pub fn earth_once() -> &'static str {
+    static EARTH: OnceLock<PathBuf> = OnceLock::new();
+    EARTH.get_or_init(|| bake("earth", "1")).to_str().unwrap()
 }
 
 /// A bake of `mars`: another radius, dust thicker than the gas.
 pub fn mars() -> &'static str {
     static MARS: OnceLock<PathBuf> = OnceLock::new();
-    MARS.get_or_init(|| bake("mars")).to_str().unwrap()
+    MARS.get_or_init(|| bake("mars", "3")).to_str().unwrap()
 }
 
 /// Whether there is a driver; said once where there is none.
