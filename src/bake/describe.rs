@@ -62,7 +62,8 @@ fn constants(planet: &Planet, palette: &Palette, medium: &Medium) -> BTreeMap<St
     let groups = compact::groups(medium);
     let is_aerosol = |g: &Vec<usize>| medium.constituents[g[0]].role == Role::Aerosol;
     let row = groups.iter().position(is_aerosol).unwrap_or(0);
-    BTreeMap::from([
+    let mut constants = coefficients(&groups, palette, medium);
+    constants.extend([
         ("four_wavelengths_nm".to_string(), palette.four_nm()),
         (
             "ground_albedo_at_four".to_string(),
@@ -77,5 +78,21 @@ fn constants(planet: &Planet, palette: &Palette, medium: &Medium) -> BTreeMap<St
             planet.star.irradiance.at_all(&palette.wavelengths_nm),
         ),
         ("elek2010_aerosol_phase_row".to_string(), vec![row as f64]),
-    ])
+    ]);
+    constants
+}
+
+/// What each constituent does where its density is 1, for those who march rays themselves, and its row of the phase
+/// table (of what scatters). Its density is that of the resolved preset.
+fn coefficients(groups: &[Vec<usize>], palette: &Palette, medium: &Medium) -> BTreeMap<String, Vec<f64>> {
+    let mut constants = BTreeMap::new();
+    for (k, c) in medium.constituents.iter().enumerate() {
+        let key = |what: &str| format!("constituent_{}_{what}", c.name);
+        let at_four = |value: &dyn Fn(usize) -> f64| palette.four.iter().map(|&w| value(w)).collect();
+        constants.insert(key("scattering_at_four_per_m"), at_four(&|w| c.scattering[w]));
+        constants.insert(key("extinction_at_four_per_m"), at_four(&|w| c.scattering[w] + c.absorption[w]));
+        let row = groups.iter().position(|g| g.contains(&k)).map(|row| row as f64);
+        constants.insert(key("phase_row"), row.into_iter().collect());
+    }
+    constants
 }

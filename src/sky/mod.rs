@@ -57,12 +57,7 @@ impl Sky {
     /// # Errors
     /// `File` for a missing, truncated or foreign file, or one that the manifest does not describe.
     pub fn open(bake: &Path, manifest: &Manifest, layout: &str) -> Result<Sky> {
-        let folder = if bake.is_dir() { bake } else { bake.parent().unwrap_or(Path::new(".")) };
-        let mut pictures = BTreeMap::new();
-        for table in manifest.tables.iter().filter(|t| t.layout == layout) {
-            pictures.insert(table.name.clone(), picture(folder, table)?);
-        }
-        Sky::new(bake, manifest, layout, &pictures)
+        Sky::new(bake, manifest, layout, &pictures(bake, manifest, layout)?)
     }
 
     /// The same from pictures in memory, by table name. `bake` is for messages.
@@ -103,6 +98,16 @@ impl Sky {
             Sky::Elek2010(sky) => sky.radiance(point, component, AerosolPhase::Preset),
         }
     }
+}
+
+/// The pictures of a layout's tables, by table name. Whether they are what their manifest says, [`Sky::new`] finds.
+///
+/// # Errors
+/// `File` for a file that is missing, damaged, or another than the one that was baked.
+pub fn pictures(bake: &Path, manifest: &Manifest, layout: &str) -> Result<BTreeMap<String, Atlas>> {
+    let folder = if bake.is_dir() { bake } else { bake.parent().unwrap_or(Path::new(".")) };
+    let tables = manifest.tables.iter().filter(|t| t.layout == layout);
+    tables.map(|table| Ok((table.name.clone(), picture(folder, table)?))).collect()
 }
 
 /// Reads the file of a table.

@@ -1,0 +1,213 @@
+//! One layout of a bake, read from its files and checked, in the form that textures take.
+
+use crate::uniforms::{MOST_GROUPS, TableUniform, TablesUniform, four, rgb_rows};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use tyndall::export::manifest::{Manifest, Table};
+use tyndall::export::{Atlas, Samples};
+use tyndall::sky::{self, Sky};
+use tyndall::{Error, Result};
+
+/// The layouts that there are shaders for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Layout {
+    Compact,
+    Elek2010,
+}
+
+impl Layout {
+    pub fn name(self) -> &'static str {
+        match self {
+            Layout::Compact => "compact",
+            Layout::Elek2010 => "elek2010",
+        }
+    }
+
+    pub fn other(self) -> Layout {
+        match self {
+            Layout::Compact => Layout::Elek2010,
+            Layout::Elek2010 => Layout::Compact,
+        }
+    }
+}
+
+/// Half-float RGBA texels, x fastest, as bits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Texels {
+    pub size: [usize; 3],
+    pub bits: Vec<[u16; 4]>,
+}
+
+impl Texels {
+    /// What stands where a layout has no such texture: one texel of zeros.
+    fn none() -> Self {
+        Texels { size: [1, 1, 1], bits: vec![[0; 4]] }
+    }
+
+    fn new(table: &Table, atlas: &Atlas) -> Texels {
+        let mut bits = vec![[0u16; 4]; atlas.slice_len() * atlas.slices];
+        for (k, info) in table.channels.iter().enumerate().take(4) {
+            let Some(channel) = atlas.channel(&info.name) else { continue };
+            for (n, texel) in bits.iter_mut().enumerate() {
+                texel[k] = match &channel.samples {
+                    Samples::Half(v) => v[n].to_bits(),
+                    Samples::Float(v) => half::f16::from_f32(v[n]).to_bits(),
+                };
+            }
+        }
+        Texels { size: [atlas.width, atlas.height, atlas.slices], bits }
+    }
+}
+
+/// A layout ready to become textures.
+pub struct Bake {
+    pub folder: PathBuf,
+    pub manifest: Manifest,
+    pub layout: Layout,
+    pub uniforms: TablesUniform,
+    pub volume: Texels,
+    pub single: Texels,
+    pub depth: Texels,
+    pub scatterers: Texels,
+    pub irradiance: Texels,
+    pub phase: Texels,
+    /// The same look-ups in double precision, for exposure.
+    pub sky: Sky,
+}
+
+impl Bake {
+    /// Reads one layout, `compact` where none is named and the bake has it.
+    ///
+    /// # Errors
+    /// `File` or `Argument` for files that are missing, damaged, newer than this tool or not what they say.
+    pub fn open(folder: &Path, layout: Option<Layout>) -> Result<Bake> {
+        let manifest = Manifest::read(folder)?;
+        let has = |layout: Layout| manifest.tables.iter().any(|t| t.layout == layout.name());
+        let layout = match layout {
+            Some(layout) if has(layout) => layout,
+            Some(layout) => {
+                return Err(Error::Argument(format!("--layout {}: not in this bake", layout.name())));
+            }
+            None if has(Layout::Compact) => Layout::Compact,
+            None if has(Layout::Elek2010) => Layout::Elek2010,
+            None => return Err(Error::file(folder, "no layout in this bake that the preview can draw")),
+        };
+        let pictures = sky::pictures(folder, &manifest, layout.name())?;
+        let sky = Sky::new(folder, &manifest, layout.name(), &pictures)?;
+        Reader { folder, manifest: &manifest, layout, pictures: &pictures }.bake(sky)
+    }
+
+    /// Bytes of texels that the textures take.
+    pub fn texture_bytes(&self) -> usize {
+        let all = [&self.volume, &self.single, &self.depth, &self.scatterers, &self.irradiance, &self.phase];
+        all.iter().map(|t| 8 * t.bits.len()).sum()
+    }
+
+    /// Radius of the ground and of the top, m.
+    pub fn radii(&self) -> [f64; 2] {
+        ["ground_radius_m", "top_radius_m"].map(|name| self.constant(name).unwrap_or(1.0))
+    }
+
+    /// The first of a list of the manifest's constants.
+    pub fn constant(&self, name: &str) -> Option<f64> {
+        self.manifest.constants.get(name)?.first().copied()
+    }
+}
+
+/// The parts of a layout that has been found sound.
+struct Reader<'a> {
+    folder: &'a Path,
+    manifest: &'a Manifest,
+    layout: Layout,
+    pictures: &'a BTreeMap<String, Atlas>,
+}
+
+impl Reader<'_> {
+    fn bake(&self, sky: Sky) -> Result<Bake> {
+        let constant = |name: &str| self.manifest.constants.get(name).and_then(|v| v.first()).copied();
+        let illuminance = constant("star_illuminance_lx").unwrap_or(1.0);
+        let main = if self.layout == Layout::Compact { "multiple" } else { "scattering" };
+        let mut uniforms = TablesUniform {
+            volume: self.uniform(main)?,
+            depth: self.uniform("transmittance")?,
+            scatterers: self.uniform("scatterers")?,
+            irradiance: self.uniform("irradiance")?,
+            phase: self.uniform("phase")?,
+            rgb: rgb_rows(self.manifest, illuminance),
+            ..Default::default()
+        };
+        if let Some(albedo) = self.manifest.constants.get("ground_albedo_at_four") {
+            uniforms.ground_albedo = four(albedo);
+        }
+        let (single, groups) = self.stacked(&mut uniforms)?;
+        if groups > 0 && (uniforms.phase.log[0] != 1.0 || uniforms.single.log[0] != 1.0) {
+            let reason = "bake.json: tables.phase and tables.single_*: must be stored as logarithms";
+            return Err(Error::file(self.folder, reason));
+        }
+        let has = |name: &str| self.table(name).is_some();
+        let row = constant("elek2010_aerosol_phase_row").unwrap_or(0.0);
+        let row = if has("phase") { row } else { -1.0 };
+        uniforms.counts = four(&[groups as f64, f64::from(u8::from(has("scatterers"))), row, illuminance]);
+        Ok(Bake {
+            folder: self.folder.to_path_buf(),
+            manifest: self.manifest.clone(),
+            layout: self.layout,
+            uniforms,
+            volume: self.texels(main),
+            single,
+            depth: self.texels("transmittance"),
+            scatterers: self.texels("scatterers"),
+            irradiance: self.texels("irradiance"),
+            phase: self.texels("phase"),
+            sky,
+        })
+    }
+
+    fn table(&self, name: &str) -> Option<(&Table, &Atlas)> {
+        let table = self.manifest.tables.iter().find(|t| t.layout == self.layout.name() && t.name == name)?;
+        Some((table, self.pictures.get(name)?))
+    }
+
+    fn texels(&self, name: &str) -> Texels {
+        self.table(name).map_or_else(Texels::none, |(table, atlas)| Texels::new(table, atlas))
+    }
+
+    /// Zeros for a table that is not there.
+    fn uniform(&self, name: &str) -> Result<TableUniform> {
+        let constant = |name: &str| {
+            let found = self.manifest.constants.get(name).and_then(|v| v.first()).copied();
+            found.ok_or_else(|| Error::file(self.folder, format!("bake.json: constants.{name} is missing")))
+        };
+        let radii = [constant("ground_radius_m")?, constant("top_radius_m")?];
+        Ok(self.table(name).map_or_else(TableUniform::default, |(table, _)| TableUniform::new(table, radii)))
+    }
+
+    /// The tables of single scattering one behind the other, in the order of the rows of the phase table.
+    fn stacked(&self, uniforms: &mut TablesUniform) -> Result<(Texels, usize)> {
+        let of_layout = self.manifest.tables.iter().filter(|t| t.layout == self.layout.name());
+        let names: Vec<&str> =
+            of_layout.map(|t| t.name.as_str()).filter(|n| n.starts_with("single_")).collect();
+        let refuse = |reason: String| Err(Error::file(self.folder, reason));
+        if names.len() > MOST_GROUPS {
+            let n = names.len();
+            return refuse(format!(
+                "{n} tables of single scattering: the preview draws {MOST_GROUPS} at most"
+            ));
+        }
+        let mut stack = Texels::none();
+        for (k, name) in names.iter().enumerate() {
+            let (uniform, texels) = (self.uniform(name)?, self.texels(name));
+            uniforms.group_scale[k] = uniform.scale;
+            uniforms.group_offset[k] = uniform.offset;
+            if k == 0 {
+                (uniforms.single, stack) = (uniform, texels);
+            } else if uniforms.single.stacks_with(&uniform) {
+                stack.size[2] += texels.size[2];
+                stack.bits.extend(texels.bits);
+            } else {
+                return refuse(format!("tables.{name}: of another shape than {}", names[0]));
+            }
+        }
+        Ok((stack, names.len()))
+    }
+}

@@ -1,0 +1,60 @@
+//! `tyndall-preview`: shows a bake from its files alone, in a window or as a picture.
+//!
+//! Of the library it uses what reads and checks files, and nothing that computes light.
+
+mod air;
+mod bake;
+mod bench;
+mod camera;
+mod controls;
+mod exposure;
+mod frame;
+mod gpu;
+mod headless;
+mod options;
+mod painter;
+mod points;
+mod relief;
+mod resources;
+mod screen;
+mod slicer;
+mod stopwatch;
+mod target;
+mod uniforms;
+mod window;
+
+use bake::Bake;
+use clap::Parser;
+use gpu::Gpu;
+use options::Options;
+use std::io::Write;
+use tyndall::Error;
+
+fn main() -> std::process::ExitCode {
+    match run(&Options::parse()) {
+        Ok(()) => std::process::ExitCode::SUCCESS,
+        Err(error) => {
+            // Not eprintln, which panics where nobody reads stderr: the exit code would be lost.
+            let _ = writeln!(std::io::stderr(), "error: {error}");
+            error.exit_code().into()
+        }
+    }
+}
+
+fn run(options: &Options) -> tyndall::Result<()> {
+    let bake = Bake::open(&options.bake, options.layout)?;
+    if !(options.headless || options.bench || options.points.is_some()) {
+        return window::run(options, bake);
+    }
+    let gpu = Gpu::headless()?;
+    if let Some(csv) = &options.points {
+        return points::run(&gpu, &bake, csv, options.hand_filtered, &mut std::io::stdout().lock());
+    }
+    if options.bench {
+        return bench::run(&gpu, &bake, options);
+    }
+    match &options.out {
+        Some(out) => headless::run(&gpu, &bake, options, out),
+        None => Err(Error::Argument("--headless: wants --out PNG".into())),
+    }
+}

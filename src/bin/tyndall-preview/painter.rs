@@ -1,0 +1,159 @@
+//! Draws frames of one layout by one method.
+
+use crate::bake::Bake;
+use crate::frame::FrameUniform;
+use crate::gpu::Gpu;
+use crate::relief::Relief;
+use crate::resources::{Baked, Method, look_ups, march_resources, overrides, uniform_entry};
+use crate::slicer::Slicer;
+use crate::target::MEASURED;
+use tyndall::Result;
+
+/// What a painter draws and by what.
+#[derive(Clone, Copy, Debug)]
+pub struct Look {
+    pub method: Method,
+    pub hand_filtered: bool,
+    /// Of the texture: `SHOWN`, `MEASURED`, or a window's.
+    pub format: wgpu::TextureFormat,
+    /// Terrain around the observer, in pictures of this size.
+    pub relief: Option<[u32; 2]>,
+}
+
+pub struct Painter {
+    baked: Baked,
+    slicer: Option<Slicer>,
+    march: Option<wgpu::BindGroup>,
+    relief: Option<Relief>,
+    /// By the tables themselves, and by slices of them.
+    pipelines: [wgpu::RenderPipeline; 2],
+    uniform: wgpu::Buffer,
+    group: wgpu::BindGroup,
+}
+
+/// One uniform at binding 0.
+pub fn frame_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+    let entries = &[uniform_entry(0)];
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("frame"), entries })
+}
+
+impl Painter {
+    /// # Errors
+    /// `Argument` or `File` for a bake that this GPU or this method cannot draw.
+    pub fn new(gpu: &Gpu, bake: &Bake, look: &Look) -> Result<Painter> {
+        let baked = Baked::new(gpu, bake)?;
+        let frame = frame_layout(gpu);
+        let march = match look.method {
+            Method::Table => None,
+            Method::March { .. } => Some(march_resources(gpu, bake, look.method)?),
+        };
+        let relief = look.relief.map(|size| Relief::new(gpu, bake, &baked, &frame, size));
+        let layouts = [
+            Some(&baked.layout),
+            Some(&frame),
+            march.as_ref().map(|m| &m.layout),
+            relief.as_ref().map(|r| &r.layout),
+        ];
+        let last = layouts.iter().rposition(Option::is_some).map_or(0, |k| k + 1);
+        let pipelines = [false, true].map(|sliced| pipeline(gpu, bake, look, &layouts[..last], sliced));
+        let slicer = match look.method {
+            Method::Table => Slicer::new(gpu, &baked, look.hand_filtered),
+            Method::March { .. } => None,
+        };
+        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        let uniform = gpu.buffer(&vec![0; size_of::<FrameUniform>()], usage);
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("frame"),
+            layout: &frame,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }],
+        });
+        Ok(Painter { baked, slicer, march: march.map(|m| m.group), relief, pipelines, uniform, group })
+    }
+
+    /// Records a frame into a texture.
+    pub fn draw(
+        &self,
+        gpu: &Gpu,
+        bake: &Bake,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        frame: &FrameUniform,
+        timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) {
+        gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(frame));
+        let serves = Slicer::serves(bake, f64::from(frame.altitude()));
+        let slicer = self.slicer.as_ref().filter(|_| serves);
+        if let Some(slicer) = slicer {
+            slicer.fill(gpu, encoder, &self.baked, frame.altitude(), frame.mu_s());
+        }
+        if let Some(relief) = &self.relief {
+            relief.draw(encoder, &self.baked.bare, &self.group);
+        }
+        let ops =
+            wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store };
+        let colour =
+            wgpu::RenderPassColorAttachment { view: target, depth_slice: None, resolve_target: None, ops };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(colour)],
+            timestamp_writes: timestamps,
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipelines[usize::from(slicer.is_some())]);
+        pass.set_bind_group(0, &self.baked.group, &[]);
+        pass.set_bind_group(1, &self.group, &[]);
+        if let Some(march) = &self.march {
+            pass.set_bind_group(2, march, &[]);
+        }
+        if let Some(relief) = &self.relief {
+            pass.set_bind_group(3, &relief.depths, &[]);
+        }
+        pass.draw(0..3, 0..1);
+    }
+}
+
+fn source(bake: &Bake, look: &Look) -> String {
+    let look_ups = look_ups(bake.layout, look.method) + include_str!("wgsl/frame.wgsl");
+    match look.relief {
+        None => look_ups + include_str!("wgsl/bare.wgsl"),
+        Some(_) => look_ups + include_str!("wgsl/relief.wgsl") + include_str!("wgsl/aerial.wgsl"),
+    }
+}
+
+fn pipeline(
+    gpu: &Gpu,
+    bake: &Bake,
+    look: &Look,
+    layouts: &[Option<&wgpu::BindGroupLayout>],
+    sliced: bool,
+) -> wgpu::RenderPipeline {
+    let module = gpu.shader("frame", &source(bake, look));
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: layouts,
+        immediate_size: 0,
+    });
+    let constants = overrides(look.hand_filtered, sliced);
+    let options = || wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
+    let entry = if look.format == MEASURED { "measure" } else { "draw" };
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("frame"),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("corner"),
+            compilation_options: options(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil: None,
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some(entry),
+            compilation_options: options(),
+            targets: &[Some(look.format.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

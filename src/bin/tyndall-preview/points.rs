@@ -1,0 +1,105 @@
+//! What the shaders answer to views given as CSV, in the form of `tyndall sample`.
+
+use crate::bake::Bake;
+use crate::gpu::Gpu;
+use crate::resources::{Baked, Method, look_ups, overrides};
+use std::io::Write;
+use std::path::Path;
+use tyndall::points::{Answer, Point, read_points, write_answers};
+use tyndall::sky::Channels;
+use tyndall::{Error, Result};
+
+/// Reads views, asks the GPU, writes the answers.
+pub fn run(gpu: &Gpu, bake: &Bake, points: &Path, hand_filtered: bool, out: &mut dyn Write) -> Result<()> {
+    let points = read_points(points)?;
+    let answers = answers(gpu, bake, &points, hand_filtered)?;
+    let written = match bake.sky.channels() {
+        Channels::Wavelengths(nm) => {
+            let rows = points.iter().zip(&answers).flat_map(|(p, v)| {
+                nm.iter().zip(v).map(move |(&wavelength_nm, &v)| {
+                    (*p, Answer { wavelength_nm, radiance: f64::from(v), stderr: None })
+                })
+            });
+            write_answers(out, rows)
+        }
+        Channels::Rgb => colours(out, &points, &answers),
+    };
+    written.map_err(|e| Error::machine("standard output", e))
+}
+
+fn colours(out: &mut dyn Write, points: &[Point], answers: &[[f32; 4]]) -> std::io::Result<()> {
+    writeln!(out, "altitude_m,mu_view,mu_sun,azimuth_deg,red_per_sr,green_per_sr,blue_per_sr")?;
+    for (p, [r, g, b, _]) in points.iter().zip(answers) {
+        writeln!(out, "{},{},{},{},{r:.8e},{g:.8e},{b:.8e}", p.altitude, p.mu, p.mu_s, p.azimuth_deg)?;
+    }
+    Ok(())
+}
+
+/// Four channels for each view.
+fn answers(gpu: &Gpu, bake: &Bake, points: &[Point], hand_filtered: bool) -> Result<Vec<[f32; 4]>> {
+    if points.is_empty() {
+        return Ok(Vec::new());
+    }
+    let baked = Baked::new(gpu, bake)?;
+    let source = look_ups(bake.layout, Method::Table) + include_str!("wgsl/points.wgsl");
+    let pipeline = pipeline(gpu, &baked, &source, hand_filtered);
+    let views: Vec<[f32; 4]> = points.iter().map(in_single_precision).collect();
+    let storage = wgpu::BufferUsages::STORAGE;
+    let views = gpu.buffer(bytemuck::cast_slice(&views), storage);
+    let results = gpu.buffer(&vec![0; views.size() as usize], storage | wgpu::BufferUsages::COPY_SRC);
+    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout: &pipeline.get_bind_group_layout(1),
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: views.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 1, resource: results.as_entire_binding() },
+        ],
+    });
+    let readable = gpu.readable(results.size());
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &baked.bare, &[]);
+        pass.set_bind_group(1, &group, &[]);
+        pass.dispatch_workgroups((points.len() as u32).div_ceil(64), 1, 1);
+    }
+    encoder.copy_buffer_to_buffer(&results, 0, &readable, 0, results.size());
+    gpu.queue.submit([encoder.finish()]);
+    Ok(bytemuck::pod_collect_to_vec(&gpu.read(&readable)?))
+}
+
+/// Altitude, mu, mu_s and nu, the last of the rounded ones.
+fn in_single_precision(p: &Point) -> [f32; 4] {
+    let rounded = |v: f64| f64::from(v as f32);
+    let nu = Point { mu: rounded(p.mu), mu_s: rounded(p.mu_s), ..*p }.nu();
+    [p.altitude, p.mu, p.mu_s, nu].map(|v| v as f32)
+}
+
+fn pipeline(gpu: &Gpu, baked: &Baked, source: &str, hand_filtered: bool) -> wgpu::ComputePipeline {
+    let storage = |binding, read_only| {
+        let ty = wgpu::BufferBindingType::Storage { read_only };
+        let ty = wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+        wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None }
+    };
+    let views = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("views"),
+        entries: &[storage(0, true), storage(1, false)],
+    });
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: &[Some(&baked.layout), Some(&views)],
+        immediate_size: 0,
+    });
+    gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some("points"),
+        layout: Some(&layout),
+        module: &gpu.shader("points", source),
+        entry_point: Some("answer_views"),
+        compilation_options: wgpu::PipelineCompilationOptions {
+            constants: &overrides(hand_filtered, false),
+            ..Default::default()
+        },
+        cache: None,
+    })
+}

@@ -1,0 +1,97 @@
+//! What the look-up shaders need of `bake.json`, in the form that `shell.wgsl` declares.
+
+use bytemuck::{Pod, Zeroable};
+use tyndall::export::manifest::{EncodingKind, Manifest, Table};
+
+/// As many groups of single scattering as `shell.wgsl` has room for.
+pub const MOST_GROUPS: usize = 6;
+
+/// `Table` of `shell.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct TableUniform {
+    pub size: [f32; 4],
+    pub radii: [f32; 4],
+    pub bends: [f32; 4],
+    pub sun: [f32; 4],
+    pub scale: [f32; 4],
+    pub offset: [f32; 4],
+    pub floor: [f32; 4],
+    pub log: [f32; 4],
+}
+
+/// `Tables` of `shell.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct TablesUniform {
+    pub volume: TableUniform,
+    pub single: TableUniform,
+    pub depth: TableUniform,
+    pub scatterers: TableUniform,
+    pub irradiance: TableUniform,
+    pub phase: TableUniform,
+    pub group_scale: [[f32; 4]; MOST_GROUPS],
+    pub group_offset: [[f32; 4]; MOST_GROUPS],
+    pub ground_albedo: [f32; 4],
+    pub rgb: [[f32; 4]; 3],
+    pub counts: [f32; 4],
+}
+
+impl TableUniform {
+    pub fn new(table: &Table, [ground, top]: [f64; 2]) -> Self {
+        let mut out = TableUniform { size: [1.0; 4], ..Default::default() };
+        for (slot, n) in out.size.iter_mut().zip(&table.shape) {
+            *slot = *n as f32;
+        }
+        // A constant of any axis; names differ between axes that differ.
+        let constant = |name: &str| table.axes.iter().find_map(|a| a.constants.get(name)).copied();
+        let number = |name: &str, without: f64| constant(name).unwrap_or(without) as f32;
+        let over_length = table.channels.iter().any(|c| c.unit == "1/m");
+        out.radii = [ground as f32, top as f32, number("mu_s_min", 0.0), f32::from(u8::from(over_length))];
+        let kind = match (constant("shift"), constant("centre")) {
+            (Some(_), _) => 1.0,
+            (_, Some(_)) => 2.0,
+            _ => 0.0,
+        };
+        let power = |name: &str| number(name, 1.0);
+        out.bends = [number("altitude_bend", 0.0), power("view_power"), power("horizon_power"), kind];
+        let middle = constant("shift").or(constant("centre")).unwrap_or(0.0) as f32;
+        out.sun = [middle, number("width", 1.0), 0.0, 0.0];
+        out.set_decoding(table);
+        out
+    }
+
+    fn set_decoding(&mut self, table: &Table) {
+        for (k, channel) in table.channels.iter().enumerate().take(4) {
+            let encoding = channel.encoding.as_ref().unwrap_or(&table.encoding);
+            self.scale[k] = encoding.scale as f32;
+            self.offset[k] = encoding.offset as f32;
+            self.log[k] = f32::from(u8::from(encoding.kind == EncodingKind::Log));
+            self.floor[k] = encoding.floor.unwrap_or(f64::from(f32::MIN)) as f32;
+        }
+    }
+
+    /// Whether a texture of this can be stacked on one of `other`: the same but for scale and offset.
+    pub fn stacks_with(&self, other: &TableUniform) -> bool {
+        let bare = |t: &TableUniform| TableUniform { scale: [0.0; 4], offset: [0.0; 4], ..*t };
+        bare(self) == bare(other)
+    }
+}
+
+/// Up to four numbers as a vector, the rest 0.
+pub fn four(values: &[f64]) -> [f32; 4] {
+    let mut out = [0.0; 4];
+    out.iter_mut().zip(values).for_each(|(o, v)| *o = *v as f32);
+    out
+}
+
+/// The rows of `rgb_from_four` over the star's illuminance.
+pub fn rgb_rows(manifest: &Manifest, illuminance: f64) -> [[f32; 4]; 3] {
+    let mut out = [[0.0; 4]; 3];
+    if let Some(rows) = manifest.colour.matrices.get("rgb_from_four") {
+        for (slot, row) in out.iter_mut().zip(rows) {
+            *slot = four(&row.iter().map(|v| v / illuminance).collect::<Vec<_>>());
+        }
+    }
+    out
+}

@@ -1,0 +1,15 @@
+// Answers to a list of views.
+
+// Altitude, mu, mu_s, nu of each.
+@group(1) @binding(0) var<storage, read> views: array<vec4f>;
+@group(1) @binding(1) var<storage, read_write> answers: array<vec4f>;
+
+@compute @workgroup_size(64)
+fn answer_views(@builtin(global_invocation_id) id: vec3u) {
+    let k = id.x;
+    if k >= arrayLength(&views) {
+        return;
+    }
+    let v = views[k];
+    answers[k] = answer(enter(tables.volume, v.x, v.y, v.z, v.w));
+}

@@ -1,0 +1,284 @@
+//! The window: events to controls, controls to frames.
+
+use crate::bake::{Bake, Layout};
+use crate::camera::Kind;
+use crate::controls::{Controls, Request, TITLE_KEYS};
+use crate::exposure::{self, factor};
+use crate::frame::{FrameUniform, View};
+use crate::gpu::{Gpu, failed};
+use crate::headless::{pixels, write_rgba};
+use crate::options::Options;
+use crate::painter::{Look, Painter};
+use crate::resources::Method;
+use crate::screen::Screen;
+use crate::target::SHOWN;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant, SystemTime};
+use tyndall::Result;
+use tyndall::export::manifest::MANIFEST;
+use winit::application::ApplicationHandler;
+use winit::event::{ElementState, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
+use winit::keyboard::PhysicalKey;
+use winit::window::{Window, WindowId};
+
+/// Shows the bake until the window is closed.
+///
+/// # Errors
+/// `Machine` where there is no display, no GPU, or the GPU is lost.
+pub fn run(options: &Options, bake: Bake) -> Result<()> {
+    let events = EventLoop::new().map_err(failed)?;
+    events.set_control_flow(ControlFlow::Poll);
+    let view = options.view(&bake)?;
+    let method = options.method(&bake)?;
+    let controls = Controls::new(&view, options.exposure, method, options.steps, bake.radii());
+    let mut app = App {
+        hand_filtered: options.hand_filtered,
+        relief: options.relief,
+        size: options.size,
+        written: written(&bake.folder),
+        bake,
+        controls,
+        shown: None,
+        clock: Instant::now(),
+        looked: Instant::now(),
+        shots: 0,
+        failure: None,
+    };
+    events.run_app(&mut app).map_err(failed)?;
+    app.failure.map_or(Ok(()), Err)
+}
+
+/// The window and what draws into it.
+struct Shown {
+    window: Arc<Window>,
+    screen: Screen,
+    gpu: Gpu,
+    painter: Painter,
+}
+
+struct App {
+    hand_filtered: bool,
+    relief: bool,
+    size: [u32; 2],
+    bake: Bake,
+    controls: Controls,
+    shown: Option<Shown>,
+    /// Of the last frame.
+    clock: Instant,
+    /// When the bake's file was last looked at, and when it had been written.
+    looked: Instant,
+    written: Option<SystemTime>,
+    shots: u32,
+    failure: Option<tyndall::Error>,
+}
+
+fn written(folder: &Path) -> Option<SystemTime> {
+    let file = if folder.is_dir() { folder.join(MANIFEST) } else { folder.to_path_buf() };
+    std::fs::metadata(file).ok()?.modified().ok()
+}
+
+impl App {
+    fn look(&self, format: wgpu::TextureFormat, size: [u32; 2]) -> Look {
+        let relief = self.relief && self.controls.camera.kind == Kind::Ground && !size.contains(&0);
+        let (method, hand_filtered) = (self.controls.method, self.hand_filtered);
+        Look { method, hand_filtered, format, relief: relief.then_some(size) }
+    }
+
+    fn open_window(&mut self, events: &ActiveEventLoop) -> Result<Shown> {
+        let [width, height] = self.size;
+        let attributes = Window::default_attributes()
+            .with_title("tyndall-preview")
+            .with_inner_size(winit::dpi::PhysicalSize::new(width, height));
+        let window = Arc::new(events.create_window(attributes).map_err(failed)?);
+        let (gpu, screen) = Screen::new(window.clone())?;
+        let painter = Painter::new(&gpu, &self.bake, &self.look(screen.format(), screen.size()))?;
+        gpu.check()?;
+        Ok(Shown { window, screen, gpu, painter })
+    }
+
+    fn rebuild(&mut self) -> Result<()> {
+        // A layout that cannot march shows its tables.
+        if self.bake.layout != Layout::Compact {
+            self.controls.method = Method::Table;
+        }
+        if let Some(mut shown) = self.shown.take() {
+            let look = self.look(shown.screen.format(), shown.screen.size());
+            let made = Painter::new(&shown.gpu, &self.bake, &look);
+            let made = made.map(|painter| shown.painter = painter);
+            self.shown = Some(shown);
+            made?;
+        }
+        Ok(())
+    }
+
+    /// Another bake or layout; what cannot be read leaves the one that is shown, with a line on stderr.
+    fn load(&mut self, folder: &Path, layout: Option<Layout>) {
+        let opened = Bake::open(folder, layout);
+        let outcome = opened.and_then(|bake| {
+            let before = std::mem::replace(&mut self.bake, bake);
+            self.controls.radii = self.bake.radii();
+            self.rebuild().inspect_err(|_| self.bake = before)
+        });
+        self.written = written(folder);
+        if let Err(error) = outcome {
+            eprintln!("error: {error}");
+        }
+    }
+
+    fn reload_if_written(&mut self) {
+        if self.looked.elapsed() < Duration::from_millis(500) {
+            return;
+        }
+        self.looked = Instant::now();
+        let now = written(&self.bake.folder);
+        if now.is_some() && now != self.written {
+            let folder = self.bake.folder.clone();
+            let has = |m: &tyndall::export::manifest::Manifest| {
+                m.tables.iter().any(|t| t.layout == self.bake.layout.name())
+            };
+            let layout = tyndall::export::manifest::Manifest::read(&folder).ok().filter(has);
+            let layout = layout.map(|_| self.bake.layout);
+            self.load(&folder, layout);
+        }
+    }
+
+    fn view(&self, size: [u32; 2]) -> View {
+        let aspect = f64::from(size[0]) / f64::from(size[1]);
+        let c = &self.controls;
+        let exposure = factor(c.exposure, &self.bake, &c.camera, aspect);
+        let g = c.g.filter(|_| self.bake.layout == Layout::Elek2010);
+        View { camera: c.camera, size, exposure, tone_mapping: c.tone_mapping, horizon_mended: true, g }
+    }
+
+    fn title(&self, view: &View, fps: f64) -> String {
+        let camera = &view.camera;
+        let method = match self.controls.method {
+            Method::Table => "tables",
+            Method::March { sun: 0, .. } => "march, 2D table",
+            Method::March { .. } => "march",
+        };
+        format!(
+            "{} {} {method} | {:.0} m, star {:.1}°, EV {:.1} | {fps:.0}/s | {TITLE_KEYS}",
+            self.bake.manifest.preset.name,
+            self.bake.layout.name(),
+            camera.altitude,
+            camera.sun_elevation,
+            exposure::ev100(view.exposure),
+        )
+    }
+
+    fn frame(&mut self) -> Result<()> {
+        let dt = self.clock.elapsed().as_secs_f64();
+        self.clock = Instant::now();
+        self.controls.advance(dt.min(0.2));
+        self.reload_if_written();
+        let Some(size) = self.shown.as_ref().map(|s| s.screen.size()) else { return Ok(()) };
+        // A window of no size shows nothing.
+        if size.contains(&0) {
+            std::thread::sleep(Duration::from_millis(50));
+            return Ok(());
+        }
+        let view = self.view(size);
+        let title = self.title(&view, 1.0 / dt.max(1e-3));
+        let uniform = FrameUniform::new(&self.bake, &view);
+        let bake = &self.bake;
+        let Some(shown) = &mut self.shown else { return Ok(()) };
+        shown.window.set_title(&title);
+        let Shown { gpu, painter, .. } = &*shown;
+        shown.screen.show(gpu, |encoder, target| painter.draw(gpu, bake, encoder, target, &uniform, None))?;
+        shown.gpu.check()
+    }
+
+    fn screenshot(&mut self) -> Result<()> {
+        let Some(shown) = &self.shown else { return Ok(()) };
+        let size = shown.screen.size();
+        if size.contains(&0) {
+            return Ok(());
+        }
+        let bytes = pixels(&shown.gpu, &self.bake, &self.view(size), &self.look(SHOWN, size))?;
+        let mut path = PathBuf::new();
+        while path.as_os_str().is_empty() || path.exists() {
+            self.shots += 1;
+            path = PathBuf::from(format!("preview-{:03}.png", self.shots));
+        }
+        write_rgba(&path, size, &bytes)?;
+        println!("{}", path.display());
+        Ok(())
+    }
+
+    fn request(&mut self, request: Request, events: &ActiveEventLoop) -> Result<()> {
+        match request {
+            Request::Nothing => Ok(()),
+            Request::Rebuild => self.rebuild(),
+            Request::Screenshot => self.screenshot(),
+            Request::SwitchLayout => {
+                let folder = self.bake.folder.clone();
+                self.load(&folder, Some(self.bake.layout.other()));
+                Ok(())
+            }
+            Request::Quit => {
+                events.exit();
+                Ok(())
+            }
+        }
+    }
+
+    fn event(&mut self, event: WindowEvent, events: &ActiveEventLoop) -> Result<()> {
+        match event {
+            WindowEvent::CloseRequested => events.exit(),
+            WindowEvent::DroppedFile(path) => self.load(&path, None),
+            WindowEvent::Resized(size) => {
+                if let Some(shown) = &mut self.shown {
+                    shown.screen.resize(&shown.gpu, [size.width, size.height]);
+                }
+                if self.relief {
+                    return self.rebuild();
+                }
+            }
+            WindowEvent::KeyboardInput { event, .. } => {
+                if let PhysicalKey::Code(key) = event.physical_key {
+                    match event.state {
+                        ElementState::Released => self.controls.release(key),
+                        ElementState::Pressed => {
+                            let request = self.controls.press(key, event.repeat);
+                            return self.request(request, events);
+                        }
+                    }
+                }
+            }
+            WindowEvent::RedrawRequested => return self.frame(),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// The first failure closes the window; `run` then returns it.
+    fn end_on(&mut self, outcome: Result<()>, events: &ActiveEventLoop) {
+        if let Err(error) = outcome {
+            self.failure.get_or_insert(error);
+            events.exit();
+        }
+    }
+}
+
+impl ApplicationHandler for App {
+    fn resumed(&mut self, events: &ActiveEventLoop) {
+        if self.shown.is_none() {
+            let opened = self.open_window(events).map(|shown| self.shown = Some(shown));
+            self.end_on(opened, events);
+        }
+    }
+
+    fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let outcome = self.event(event, events);
+        self.end_on(outcome, events);
+    }
+
+    fn about_to_wait(&mut self, _: &ActiveEventLoop) {
+        if let Some(shown) = &self.shown {
+            shown.window.request_redraw();
+        }
+    }
+}
