@@ -33,10 +33,15 @@ pub fn preview(sky: &Sky, planet: &Planet, waters: &[(&str, &WaterSky)]) -> Resu
         panels.push(from_space(SIZE, &format!("SPACE {sun:.0}"), Exposure::Auto, radii, look));
     }
     for (name, water) in waters {
-        for (sun, depth) in WATER_SUNS.iter().flat_map(|s| WATER_DEPTHS.map(|d| (*s, d))) {
-            let look = |v: [f64; 3]| Some(water_colour(sky, water, v, sun, depth));
-            let label = format!("{name} {depth:.0} M SUN {sun:.0}");
-            panels.push(fisheye(SIZE, &label, Exposure::Auto, look));
+        for sun in WATER_SUNS {
+            // One exposure for all depths, that of the first, so that water darkens as it gets deeper.
+            let mut exposure = Exposure::Auto;
+            for depth in WATER_DEPTHS {
+                let look = |v: [f64; 3]| Some(water_colour(sky, water, v, sun, depth));
+                let panel = fisheye(SIZE, &format!("{name} {depth:.0} M SUN {sun:.0}"), exposure, look);
+                exposure = Exposure::Fixed(panel.exposure);
+                panels.push(panel);
+            }
         }
     }
     let errors = panels.iter().map(|p| p.errors).sum();

@@ -13,9 +13,14 @@ impl<F: Fn([f64; 3]) -> Option<[f64; 3]> + Sync> Radiance for F {}
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Exposure {
     Fixed(f64),
-    /// Four fifths of the pixels end below 0.7 (linear); rounded to two digits, so that a label can state it.
+    /// Four fifths of the pixels end below 0.7 (linear); rounded to two digits, so that a label can state it. No more
+    /// than [`MOST`].
     Auto,
 }
+
+/// The most that a panel lets in by itself: light millions of times fainter than a day's is no more than the residual
+/// of the solver, and is left black.
+const MOST: f64 = 1e7;
 
 /// Pixels that no display can show: not a number, infinite, or negative.
 pub const ERROR_COLOUR: [u8; 3] = [255, 0, 255];
@@ -75,7 +80,8 @@ fn panel(
     let pixels: Vec<Vec<u8>> =
         rows.par_iter().map(|row| row.iter().flat_map(|&rgb| tone.pixel(rgb)).collect()).collect();
     let errors = rows.iter().flatten().flatten().filter(|rgb| !displayable(rgb)).count();
-    Panel { label: format!("{label} E={exposure:.2e}"), size: [size, size], rgb: pixels.concat(), errors }
+    let label = format!("{label} E={exposure:.2e}");
+    Panel { label, exposure, size: [size, size], rgb: pixels.concat(), errors }
 }
 
 fn displayable(rgb: &[f64; 3]) -> bool {
@@ -88,7 +94,7 @@ fn automatic(rows: &[Vec<Option<[f64; 3]>>]) -> f64 {
     largest.sort_by(f64::total_cmp);
     let Some(&high) = largest.get(largest.len() * 4 / 5) else { return 1.0 };
     // 1 - exp(-1.2) = 0.7.
-    format!("{:.1e}", 1.2 / high).parse().unwrap_or(1.0)
+    format!("{:.1e}", (1.2 / high).min(MOST)).parse().unwrap_or(1.0)
 }
 
 /// From radiance to a byte: 1 - exp(-exposure · radiance) (Elek & Kmoch 2010, section 5), then the transfer

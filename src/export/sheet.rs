@@ -4,9 +4,11 @@ use super::font::{ADVANCE, LINE, glyph};
 use crate::error::{Error, Result};
 
 /// A picture of a sky, with what its label says.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     pub label: String,
+    /// What radiance was multiplied with.
+    pub exposure: f64,
     /// Width and height, pixels.
     pub size: [usize; 2],
     /// Three bytes a pixel, row by row from the top.
@@ -43,10 +45,20 @@ pub fn contact_sheet(panels: &[Panel], columns: usize) -> Result<Vec<u8>> {
     sheet.png()
 }
 
-/// A label in lines that fit `width` pixels.
+/// A label in lines that fit `width` pixels, broken between words where words fit.
 fn wrapped(label: &str, width: usize) -> Vec<Vec<char>> {
-    let characters: Vec<char> = label.chars().collect();
-    characters.chunks((width / ADVANCE).max(1)).map(<[char]>::to_vec).collect()
+    let room = (width / ADVANCE).max(1);
+    let mut lines: Vec<Vec<char>> = Vec::new();
+    for word in label.split(' ') {
+        match lines.last_mut() {
+            Some(line) if line.len() + 1 + word.chars().count() <= room => {
+                line.push(' ');
+                line.extend(word.chars());
+            }
+            _ => lines.extend(word.chars().collect::<Vec<_>>().chunks(room).map(<[char]>::to_vec)),
+        }
+    }
+    lines
 }
 
 struct Canvas {
@@ -101,7 +113,13 @@ mod tests {
     use super::*;
 
     fn plain(label: &str, side: usize, value: u8) -> Panel {
-        Panel { label: label.into(), size: [side, side], rgb: vec![value; 3 * side * side], errors: 0 }
+        Panel {
+            label: label.into(),
+            exposure: 1.0,
+            size: [side, side],
+            rgb: vec![value; 3 * side * side],
+            errors: 0,
+        }
     }
 
     /// Two columns of three panels 40 wide; six characters fit, so "MARS AT DUSK" takes two lines.

@@ -117,9 +117,9 @@ fn spacing(medium: &Medium) -> Vec<f64> {
 
 /// Vertical optical depth above which air is thick.
 pub const THIN: f64 = 4.0;
-/// Levels that thick air has besides at its upper side, as a share of the others: there the field bends over a
-/// fraction of a unit of optical depth. Found on a layer of depth 30 without loss, whose energy balance was 5 %
-/// short without them.
+/// Levels that thick air has besides at its upper side and over the ground, as a share of the others: there the field
+/// bends over a fraction of a unit of optical depth. Found on a layer of depth 30: without those above, its energy
+/// balance was 5 % short; without those below, light on the ground was 1.1 % off in the median, and 0.08 % with them.
 const SKIN: f64 = 0.3;
 
 /// Optical depths of the steps of height.
@@ -127,7 +127,7 @@ struct Depths {
     /// Each step's share of the whole, in the mean over wavelengths, so that a cloud counts that is thin beside the
     /// gas at one wavelength and thick at another.
     shares: Vec<f64>,
-    /// Each step's share of what light straight down loses, likewise.
+    /// Each step's share of what light straight down loses, and of what light straight up does, likewise.
     skin: Vec<f64>,
     /// The largest whole.
     largest: f64,
@@ -145,12 +145,16 @@ fn depths(medium: &Medium, middle: impl Fn(usize) -> f64, dz: f64) -> Depths {
         if whole > 0.0 {
             out.shares.iter_mut().zip(&depth).for_each(|(m, d)| *m += d / whole / count as f64);
         }
-        let mut left = 1.0;
-        for (skin, d) in out.skin.iter_mut().zip(&depth).rev() {
-            let through = left * libm::exp(-d);
-            *skin += (left - through) / count as f64;
-            left = through;
-        }
+        let mut bends = |steps: &mut dyn Iterator<Item = usize>| {
+            let mut left = 1.0;
+            for k in steps {
+                let through = left * libm::exp(-depth[k]);
+                out.skin[k] += (left - through) / count as f64;
+                left = through;
+            }
+        };
+        bends(&mut (0..STEPS).rev());
+        bends(&mut (0..STEPS));
     }
     out
 }
