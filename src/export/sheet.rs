@@ -122,10 +122,10 @@ mod tests {
         }
     }
 
-    /// Two columns of three panels 40 wide; six characters fit, so "MARS AT DUSK" takes two lines.
+    /// Two columns of three panels 40 wide; six characters fit, so "SUN AT DUSK" takes two lines.
     #[test]
     fn a_sheet_holds_its_panels_and_their_labels() {
-        let panels = [plain("I", 40, 90), plain("Mars at dusk", 40, 120), plain("", 40, 150)];
+        let panels = [plain("I", 40, 90), plain("Sun at dusk", 40, 120), plain("", 40, 150)];
         let bytes = contact_sheet(&panels, 2).unwrap();
         assert_eq!(bytes, contact_sheet(&panels, 2).unwrap());
         let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
@@ -139,6 +139,16 @@ mod tests {
             assert_eq!([at(5, y), at(6, y), at(7, y)], [BACKGROUND, INK, BACKGROUND]);
         }
         assert!(contact_sheet(&[], 2).is_err() && contact_sheet(&panels, 0).is_err());
+    }
+
+    /// Lines end between words; a word too long for one is cut.
+    #[test]
+    fn labels_are_broken_between_words() {
+        let lines = |label| -> Vec<String> {
+            wrapped(label, 6 * ADVANCE).into_iter().map(|line| line.into_iter().collect()).collect()
+        };
+        assert_eq!(lines("Sun at dusk"), ["Sun at", "dusk"]);
+        assert_eq!(lines("phytoplankton 2 m"), ["phytop", "lankto", "n 2 m"]);
     }
 
     /// Every sign that labels use can be told from a blank and from each other.
