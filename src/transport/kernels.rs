@@ -78,16 +78,7 @@ pub fn multiple(
             for (g, (group, collapsed)) in groups.iter().zip(&scratch.collapsed).enumerate() {
                 let out = &mut out[g * count..][..count][c * CHUNK..];
                 let weight = group.weights[k];
-                match compiled_modes(group.basis) {
-                    1 => add_field::<1>(collapsed, &places, &azimuth, weight, out),
-                    2 => add_field::<2>(collapsed, &places, &azimuth, weight, out),
-                    3 => add_field::<3>(collapsed, &places, &azimuth, weight, out),
-                    5 => add_field::<5>(collapsed, &places, &azimuth, weight, out),
-                    7 => add_field::<7>(collapsed, &places, &azimuth, weight, out),
-                    9 => add_field::<9>(collapsed, &places, &azimuth, weight, out),
-                    11 => add_field::<11>(collapsed, &places, &azimuth, weight, out),
-                    _ => add_field::<{ MOST_DEGREE + 1 }>(collapsed, &places, &azimuth, weight, out),
-                }
+                add_field(compiled_modes(group.basis), collapsed, &places, &azimuth, weight, out);
             }
         }
     }
@@ -110,22 +101,35 @@ pub(super) fn add_sample(
         let places = axis.places(&sun);
         let azimuth = azimuth_factors(sample, mu, chunk, &sun, modes);
         let out = &mut out[c * CHUNK..];
-        match modes {
-            1 => add_field::<1>(collapsed, &places, &azimuth, one, out),
-            2 => add_field::<2>(collapsed, &places, &azimuth, one, out),
-            3 => add_field::<3>(collapsed, &places, &azimuth, one, out),
-            5 => add_field::<5>(collapsed, &places, &azimuth, one, out),
-            7 => add_field::<7>(collapsed, &places, &azimuth, one, out),
-            9 => add_field::<9>(collapsed, &places, &azimuth, one, out),
-            11 => add_field::<11>(collapsed, &places, &azimuth, one, out),
-            _ => add_field::<{ MOST_DEGREE + 1 }>(collapsed, &places, &azimuth, one, out),
-        }
+        add_field(modes, collapsed, &places, &azimuth, one, out);
     }
 }
 
-/// Adds a chunk's light of one sample: linear between sun nodes, summed over the orders.
+/// Adds a chunk's light of one sample: linear between sun nodes, summed over the orders, whose number the compiler
+/// has to know.
 #[inline(always)]
-fn add_field<const MODES: usize>(
+fn add_field(
+    modes: usize,
+    collapsed: &[Lanes],
+    places: &Places,
+    azimuth: &AzimuthFactors,
+    weight: Lanes,
+    out: &mut [Lanes],
+) {
+    match modes {
+        1 => add_orders::<1>(collapsed, places, azimuth, weight, out),
+        2 => add_orders::<2>(collapsed, places, azimuth, weight, out),
+        3 => add_orders::<3>(collapsed, places, azimuth, weight, out),
+        5 => add_orders::<5>(collapsed, places, azimuth, weight, out),
+        7 => add_orders::<7>(collapsed, places, azimuth, weight, out),
+        9 => add_orders::<9>(collapsed, places, azimuth, weight, out),
+        11 => add_orders::<11>(collapsed, places, azimuth, weight, out),
+        _ => add_orders::<{ MOST_DEGREE + 1 }>(collapsed, places, azimuth, weight, out),
+    }
+}
+
+#[inline(always)]
+fn add_orders<const MODES: usize>(
     collapsed: &[Lanes],
     places: &Places,
     azimuth: &AzimuthFactors,
