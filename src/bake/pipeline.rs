@@ -5,7 +5,9 @@ use super::palette::Palette;
 use super::settings::{Layout, Settings, Solver};
 use super::tables::Baked;
 use super::water::WaterTables;
-use super::{compact, describe, elek2010, extinction, pictures, report, skies, spectral, three_atmosphere, water};
+use super::{
+    compact, describe, elek2010, extinction, pictures, report, skies, spectral, three_atmosphere, water,
+};
 use crate::error::{Error, Result};
 use crate::export::manifest::Manifest;
 use crate::medium::Medium;
@@ -140,7 +142,8 @@ impl<'a> Solved<'a> {
             filled.tables.extend(tables);
             filled.counts.insert("compact multiple scattering below 0, set to dark".into(), json!(negative));
         }
-        if let (true, Some(light)) = (self.settings.layouts.contains(&Layout::ThreeAtmosphere), &self.full_light)
+        if let (true, Some(light)) =
+            (self.settings.layouts.contains(&Layout::ThreeAtmosphere), &self.full_light)
         {
             stage("three-atmosphere tables");
             let mut found = three_atmosphere::tables(self.planet, &self.full, light, palette)?;

@@ -6,13 +6,15 @@ use crate::bake::palette::Palette;
 use crate::error::{Error, Result};
 use crate::medium::{Medium, Role};
 use crate::preset::Planet;
-use crate::spectrum::weighted;
+use crate::spectrum::{multiply, weighted};
 use crate::table::Bruneton;
 use serde_json::{Value, json};
 
 /// Spectra as the package sees them: weighted by the star's light for each component of RGB.
 pub struct Colours {
     weights: Vec<[f64; 3]>,
+    /// What the weights make of a spectrum of 1.
+    one: [f64; 3],
     /// The star's light, RGB in lx.
     pub star_lx: [f64; 3],
     pub ground_albedo: [f64; 3],
@@ -21,15 +23,16 @@ pub struct Colours {
 impl Colours {
     pub fn new(medium: &Medium, palette: &Palette) -> Self {
         let weights = palette.rgb_weights();
-        let star_lx = weighted(&weights, &vec![1.0; weights.len()]);
-        let mut colours = Colours { weights, star_lx, ground_albedo: [0.0; 3] };
+        let one = weighted(&weights, &vec![1.0; weights.len()]);
+        let star_lx = multiply(&palette.space.from_xyz(), palette.star_xyz);
+        let mut colours = Colours { weights, one, star_lx, ground_albedo: [0.0; 3] };
         colours.ground_albedo = colours.mean(&medium.ground_albedo);
         colours
     }
 
     fn mean(&self, values: &[f64]) -> [f64; 3] {
         let sum = weighted(&self.weights, values);
-        std::array::from_fn(|c| (sum[c] / self.star_lx[c]).max(0.0))
+        std::array::from_fn(|c| (sum[c] / self.one[c]).max(0.0))
     }
 }
 

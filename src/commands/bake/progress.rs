@@ -69,7 +69,7 @@ pub fn stages(settings: &Settings) -> usize {
     const ALWAYS: usize = 8;
     let has = |layout| usize::from(settings.layouts.contains(&layout));
     let waters = usize::from(!settings.waters.list.is_empty());
-    ALWAYS + has(Layout::Elek2010) + has(Layout::Compact) + waters
+    ALWAYS + has(Layout::Elek2010) + has(Layout::Compact) + has(Layout::ThreeAtmosphere) + waters
 }
 
 /// Times the stages of one bake and moves its bar.

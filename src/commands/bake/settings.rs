@@ -56,6 +56,10 @@ pub fn settings(args: &Args) -> Result<Settings> {
             "elek2010" => settings.elek2010_size = size,
             "compact" => settings.compact_sizes = Sizes { multiple: size, ..settings.compact_sizes },
             "compact-single" => settings.compact_sizes = Sizes { single: size, ..settings.compact_sizes },
+            "three-atmosphere" => {
+                let fixed = "the sizes of three-atmosphere are compiled into its reader";
+                return Err(Error::Argument(format!("--size {text}: {fixed}")));
+            }
             other => {
                 let known = "elek2010, compact, compact-single or water";
                 return Err(Error::Argument(format!("--size {text}: {other} is not one of {known}")));
