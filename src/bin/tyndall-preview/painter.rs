@@ -57,7 +57,7 @@ impl Painter {
         let last = layouts.iter().rposition(Option::is_some).map_or(0, |k| k + 1);
         let pipelines = [false, true].map(|sliced| pipeline(gpu, bake, look, &layouts[..last], sliced));
         let slicer = match look.method {
-            Method::Table => Slicer::new(gpu, &baked, look.hand_filtered),
+            Method::Table => Slicer::new(gpu, bake, &baked, look.hand_filtered),
             Method::March { .. } => None,
         };
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
@@ -78,7 +78,6 @@ impl Painter {
         encoder: &mut wgpu::CommandEncoder,
         target: &wgpu::TextureView,
         frame: &FrameUniform,
-        timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) {
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(frame));
         let serves = Slicer::serves(bake, f64::from(frame.altitude()));
@@ -95,7 +94,6 @@ impl Painter {
             wgpu::RenderPassColorAttachment { view: target, depth_slice: None, resolve_target: None, ops };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             color_attachments: &[Some(colour)],
-            timestamp_writes: timestamps,
             ..Default::default()
         });
         pass.set_pipeline(&self.pipelines[usize::from(slicer.is_some())]);
@@ -112,7 +110,7 @@ impl Painter {
 }
 
 fn source(bake: &Bake, look: &Look) -> String {
-    let look_ups = look_ups(bake.layout, look.method) + include_str!("wgsl/frame.wgsl");
+    let look_ups = look_ups(bake, look.method) + include_str!("wgsl/frame.wgsl");
     match look.relief {
         None => look_ups + include_str!("wgsl/bare.wgsl"),
         Some(_) => look_ups + include_str!("wgsl/relief.wgsl") + include_str!("wgsl/aerial.wgsl"),

@@ -187,7 +187,7 @@ impl App {
         let Some(shown) = &mut self.shown else { return Ok(()) };
         shown.window.set_title(&title);
         let Shown { gpu, painter, .. } = &*shown;
-        shown.screen.show(gpu, |encoder, target| painter.draw(gpu, bake, encoder, target, &uniform, None))?;
+        shown.screen.show(gpu, |encoder, target| painter.draw(gpu, bake, encoder, target, &uniform))?;
         shown.gpu.check()
     }
 
