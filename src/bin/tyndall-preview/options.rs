@@ -80,6 +80,9 @@ pub struct Options {
     /// Weigh texels in the shader, to the last digit, and not in the texture units
     #[arg(long)]
     pub hand_filtered: bool,
+    /// For tests: the device is lost before the first picture, or after the first frame of a window
+    #[arg(long, hide = true)]
+    pub lose_device: bool,
 }
 
 /// Where the light of a frame comes from.
