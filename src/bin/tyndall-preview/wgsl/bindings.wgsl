@@ -12,3 +12,5 @@
 
 // Whether slices are there and hold the observer's altitude and sun.
 override SLICED: bool = false;
+// Whether any of the pixels drawn may show ground.
+override GROUND: bool = true;

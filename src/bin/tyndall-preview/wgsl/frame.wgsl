@@ -72,7 +72,7 @@ fn seen(d: vec3f) -> vec3f {
     let light = scattered_here(p, frame.forward.w);
     // Once for both: processors that draw in software go through all branches.
     let through = transmittance_of(p);
-    if p.hits_ground {
+    if GROUND && p.hits_ground {
         return light + ground_after(sun_at_ground(tables.volume, p), through);
     }
     return light + rgb_of(tables, star(d) * through);
