@@ -80,6 +80,7 @@ fn wrong_files_are_named() {
 #[test]
 fn wrong_arguments_are_named() {
     for (line, word) in [
+        ("--size 0x0", "--size"),
         ("--size 0x10", "--size"),
         ("--size 10", "--size"),
         ("--sun 91", "--sun"),
@@ -105,4 +106,23 @@ fn what_does_not_fit_is_named() {
     refused(&preview(&[earth(), "--headless"]), 2, &["--out"]);
     let nowhere = preview(&[earth(), "--headless", "--size", "8x8", "--out", "/nowhere/x.png"]);
     refused(&nowhere, 3, &["/nowhere/x.png"]);
+}
+
+/// A device that is lost, whatever is done with it: the machine's fault, in one line that says so. (Destroyed on purpose;
+/// the driver's word and this one come by the same callback.)
+#[test]
+fn a_lost_device_is_told() {
+    if !gpu() {
+        return;
+    }
+    for more in [&["--relief"][..], &["--method", "march"], &["--layout", "elek2010"]] {
+        let mut all = vec!["--size", "16x9", "--lose-device"];
+        all.extend(more);
+        refused(&draw(Path::new(earth()), &all), 3, &["GPU: the device was lost"]);
+    }
+    let bench = [earth(), "--bench", "--size", "16x9", "--frames", "2", "--lose-device"];
+    refused(&preview(&bench), 3, &["GPU: the device was lost"]);
+    let dir = tempfile::tempdir().unwrap();
+    let points = write_points(dir.path(), &[[0.0, 1.0, 1.0, 0.0]]);
+    refused(&preview(&[earth(), "--points", &points, "--lose-device"]), 3, &["GPU: the device was lost"]);
 }

@@ -21,10 +21,10 @@ pub fn tyndall(arguments: &[&str]) -> Ran {
     ran(Command::new(env!("CARGO_BIN_EXE_tyndall")).args(arguments).output().unwrap())
 }
 
-/// Mesa's layer that chooses a device is left out: without a desktop session it talks on stderr.
+/// As without a desktop session, where Mesa's layer that chooses a device would talk on stderr.
 pub fn preview_command() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tyndall-preview"));
-    command.env("NODEVICE_SELECT", "1");
+    command.env_remove("XDG_RUNTIME_DIR");
     command
 }
 

@@ -31,6 +31,7 @@ use std::io::Write;
 use tyndall::Error;
 
 fn main() -> std::process::ExitCode {
+    hush();
     match run(&Options::parse()) {
         Ok(()) => std::process::ExitCode::SUCCESS,
         Err(error) => {
@@ -41,12 +42,24 @@ fn main() -> std::process::ExitCode {
     }
 }
 
+/// Mesa's layer that chooses among GPUs asks for a Wayland display and says on stderr where there can be none: then it
+/// is left out.
+fn hush() {
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        // SAFETY: no other thread runs yet that could read the environment.
+        unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
+    }
+}
+
 fn run(options: &Options) -> tyndall::Result<()> {
     let bake = Bake::open(&options.bake, options.layout)?;
     if !(options.headless || options.bench || options.points.is_some()) {
         return window::run(options, bake);
     }
     let gpu = Gpu::headless()?;
+    if options.lose_device {
+        gpu.device.destroy();
+    }
     if let Some(csv) = &options.points {
         return points::run(&gpu, &bake, csv, options.hand_filtered, &mut std::io::stdout().lock());
     }

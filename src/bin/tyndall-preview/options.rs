@@ -62,13 +62,13 @@ pub struct Options {
     /// Show terrain by the plain difference of two look-ups, whose weakness near the horizon is else mended
     #[arg(long, requires = "relief")]
     pub bare_difference: bool,
-    /// Where the light comes from
-    #[arg(long, default_value = "table")]
-    pub method: MethodName,
+    /// Where the light comes from; table unless said otherwise, with --bench all in turn
+    #[arg(long)]
+    pub method: Option<MethodName>,
     /// Steps of a march along the view and towards the sun
     #[arg(long, value_name = "VIEWxSUN", default_value = "64x16", value_parser = size)]
     pub steps: [u32; 2],
-    /// Print the times of a frame, by tables and by marches, and their ratio
+    /// Print times and memory of a frame, by tables and by marches, and their ratio
     #[arg(long, conflicts_with = "points")]
     pub bench: bool,
     /// Frames that --bench takes times of
@@ -80,6 +80,9 @@ pub struct Options {
     /// Weigh texels in the shader, to the last digit, and not in the texture units
     #[arg(long)]
     pub hand_filtered: bool,
+    /// For tests: the device is lost before the first picture, or after the first frame of a window
+    #[arg(long, hide = true)]
+    pub lose_device: bool,
 }
 
 /// Where the light of a frame comes from.
@@ -132,11 +135,12 @@ impl Options {
     /// # Errors
     /// `Argument` for a march in a layout that does not hold what it needs.
     pub fn method(&self, bake: &Bake) -> Result<Method> {
-        if self.method != MethodName::Table && bake.layout != Layout::Compact {
+        let method = self.method.unwrap_or(MethodName::Table);
+        if method != MethodName::Table && bake.layout != Layout::Compact {
             return Err(Error::Argument("--method: a march needs layout compact".into()));
         }
         let [view, sun] = self.steps;
-        Ok(match self.method {
+        Ok(match method {
             MethodName::Table => Method::Table,
             MethodName::March => Method::March { view, sun },
             MethodName::March2d => Method::March { view, sun: 0 },

@@ -41,7 +41,7 @@ fn answers(gpu: &Gpu, bake: &Bake, points: &[Point], hand_filtered: bool) -> Res
         return Ok(Vec::new());
     }
     let baked = Baked::new(gpu, bake)?;
-    let source = look_ups(bake.layout, Method::Table) + include_str!("wgsl/points.wgsl");
+    let source = look_ups(bake, Method::Table) + include_str!("wgsl/points.wgsl");
     let pipeline = pipeline(gpu, &baked, &source, hand_filtered);
     let views: Vec<[f32; 4]> = points.iter().map(in_single_precision).collect();
     let storage = wgpu::BufferUsages::STORAGE;

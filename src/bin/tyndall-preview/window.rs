@@ -1,9 +1,9 @@
 //! The window: events to controls, controls to frames.
 
 use crate::bake::{Bake, Layout};
-use crate::camera::Kind;
+use crate::camera::{Camera, Kind};
 use crate::controls::{Controls, Request, TITLE_KEYS};
-use crate::exposure::{self, factor};
+use crate::exposure::{self, Exposure, factor};
 use crate::frame::{FrameUniform, View};
 use crate::gpu::{Gpu, failed};
 use crate::headless::{pixels, write_rgba};
@@ -35,6 +35,7 @@ pub fn run(options: &Options, bake: Bake) -> Result<()> {
     let controls = Controls::new(&view, options.exposure, method, options.steps, bake.radii());
     let mut app = App {
         hand_filtered: options.hand_filtered,
+        lose_device: options.lose_device,
         relief: options.relief,
         size: options.size,
         written: written(&bake.folder),
@@ -42,6 +43,8 @@ pub fn run(options: &Options, bake: Bake) -> Result<()> {
         controls,
         shown: None,
         clock: Instant::now(),
+        titled: None,
+        exposed: None,
         looked: Instant::now(),
         shots: 0,
         failure: None,
@@ -60,6 +63,7 @@ struct Shown {
 
 struct App {
     hand_filtered: bool,
+    lose_device: bool,
     relief: bool,
     size: [u32; 2],
     bake: Bake,
@@ -67,6 +71,10 @@ struct App {
     shown: Option<Shown>,
     /// Of the last frame.
     clock: Instant,
+    /// When the title was last written.
+    titled: Option<Instant>,
+    /// What the last exposure was found for, and what it was.
+    exposed: Option<((Exposure, Camera, f64), f64)>,
     /// When the bake's file was last looked at, and when it had been written.
     looked: Instant,
     written: Option<SystemTime>,
@@ -118,6 +126,7 @@ impl App {
         let opened = Bake::open(folder, layout);
         let outcome = opened.and_then(|bake| {
             let before = std::mem::replace(&mut self.bake, bake);
+            self.exposed = None;
             self.controls.radii = self.bake.radii();
             self.rebuild().inspect_err(|_| self.bake = before)
         });
@@ -144,12 +153,33 @@ impl App {
         }
     }
 
-    fn view(&self, size: [u32; 2]) -> View {
-        let aspect = f64::from(size[0]) / f64::from(size[1]);
+    /// What 1 cd/m² becomes, found anew where something has changed.
+    fn exposure(&mut self, aspect: f64) -> f64 {
+        let wanted = (self.controls.exposure, self.controls.camera, aspect);
+        match self.exposed {
+            Some((found_for, exposure)) if found_for == wanted => exposure,
+            _ => {
+                let exposure = factor(wanted.0, &self.bake, &wanted.1, aspect);
+                self.exposed = Some((wanted, exposure));
+                exposure
+            }
+        }
+    }
+
+    fn view(&mut self, size: [u32; 2]) -> View {
+        let exposure = self.exposure(f64::from(size[0]) / f64::from(size[1]));
         let c = &self.controls;
-        let exposure = factor(c.exposure, &self.bake, &c.camera, aspect);
         let g = c.g.filter(|_| self.bake.layout == Layout::Elek2010);
         View { camera: c.camera, size, exposure, tone_mapping: c.tone_mapping, horizon_mended: true, g }
+    }
+
+    /// The title, some times a second: servers take long over it.
+    fn new_title(&mut self, view: &View, dt: f64) -> Option<String> {
+        if self.titled.is_some_and(|t| t.elapsed() < Duration::from_millis(200)) {
+            return None;
+        }
+        self.titled = Some(Instant::now());
+        Some(self.title(view, 1.0 / dt.max(1e-3)))
     }
 
     fn title(&self, view: &View, fps: f64) -> String {
@@ -181,23 +211,28 @@ impl App {
             return Ok(());
         }
         let view = self.view(size);
-        let title = self.title(&view, 1.0 / dt.max(1e-3));
+        let title = self.new_title(&view, dt);
         let uniform = FrameUniform::new(&self.bake, &view);
         let bake = &self.bake;
         let Some(shown) = &mut self.shown else { return Ok(()) };
-        shown.window.set_title(&title);
+        if let Some(title) = title {
+            shown.window.set_title(&title);
+        }
         let Shown { gpu, painter, .. } = &*shown;
-        shown.screen.show(gpu, |encoder, target| painter.draw(gpu, bake, encoder, target, &uniform, None))?;
+        shown.screen.show(gpu, |encoder, target| painter.draw(gpu, bake, encoder, target, &uniform))?;
+        if self.lose_device {
+            shown.gpu.device.destroy();
+        }
         shown.gpu.check()
     }
 
     fn screenshot(&mut self) -> Result<()> {
-        let Some(shown) = &self.shown else { return Ok(()) };
-        let size = shown.screen.size();
-        if size.contains(&0) {
+        let Some(size) = self.shown.as_ref().map(|s| s.screen.size()).filter(|s| !s.contains(&0)) else {
             return Ok(());
-        }
-        let bytes = pixels(&shown.gpu, &self.bake, &self.view(size), &self.look(SHOWN, size))?;
+        };
+        let view = self.view(size);
+        let Some(shown) = &self.shown else { return Ok(()) };
+        let bytes = pixels(&shown.gpu, &self.bake, &view, &self.look(SHOWN, size))?;
         let mut path = PathBuf::new();
         while path.as_os_str().is_empty() || path.exists() {
             self.shots += 1;

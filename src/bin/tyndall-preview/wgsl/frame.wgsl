@@ -70,14 +70,12 @@ fn seen(d: vec3f) -> vec3f {
         return rgb_of(tables, vec4f(star(d)));
     }
     let light = scattered_here(p, frame.forward.w);
-    if p.hits_ground {
-        return light + ground_after(sun_at_ground(tables.volume, p), transmittance_of(p));
+    // Once for both: processors that draw in software go through all branches.
+    let through = transmittance_of(p);
+    if GROUND && p.hits_ground {
+        return light + ground_after(sun_at_ground(tables.volume, p), through);
     }
-    let disc = star(d);
-    if disc > 0.0 {
-        return light + rgb_of(tables, disc * transmittance_of(p));
-    }
-    return light;
+    return light + rgb_of(tables, star(d) * through);
 }
 
 // O'Neil 2005, the paper's: 1 - exp(-x).
