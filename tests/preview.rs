@@ -9,5 +9,6 @@ mod preview {
     mod refused;
     mod run;
     mod seams;
+    mod water;
     mod window;
 }

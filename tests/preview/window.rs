@@ -70,7 +70,10 @@ fn until(what: &str, mut holds: impl FnMut() -> bool) {
 
 /// Copies a bake over another, the manifest last, as a bake that is written anew.
 fn put(bake: &str, to: &Path) {
-    for folder in ["compact", "elek2010", ""] {
+    for folder in ["compact", "elek2010", "water", ""] {
+        if !Path::new(bake).join(folder).is_dir() {
+            continue;
+        }
         fs::create_dir_all(to.join(folder)).unwrap();
         for path in fs::read_dir(Path::new(bake).join(folder)).unwrap().map(|e| e.unwrap().path()) {
             if path.is_file() {
@@ -81,7 +84,7 @@ fn put(bake: &str, to: &Path) {
 }
 
 /// A window opens with the bake in its title; Tab switches the layout, P leaves a picture, a bake written anew is
-/// loaded, Escape ends the program, which found nothing to complain of.
+/// loaded, W goes through its waters and back to land, Escape ends the program, which found nothing to complain of.
 #[test]
 fn a_window_opens_and_obeys() {
     if !gpu() {
@@ -105,8 +108,14 @@ fn a_window_opens_and_obeys() {
     until("the other layout", || display.title().contains("earth elek2010"));
     display.key("p");
     until("the screenshot", || dir.path().join("preview-001.png").exists());
-    put(mars(), &bake);
+    put(wet(), &bake);
     until("the bake that was written anew", || display.title().contains("mars elek2010"));
+    display.key("w");
+    until("the first water", || display.title().contains("clear-ocean 10.0 m deep"));
+    display.key("w");
+    until("the second water", || display.title().contains("muddy"));
+    display.key("w");
+    until("land", || !display.title().contains("deep"));
     display.key("Escape");
     let mut status = None;
     until("the end", || {

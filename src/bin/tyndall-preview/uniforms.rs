@@ -85,10 +85,10 @@ pub fn four(values: &[f64]) -> [f32; 4] {
     out
 }
 
-/// The rows of `rgb_from_four` over the star's illuminance.
-pub fn rgb_rows(manifest: &Manifest, illuminance: f64) -> [[f32; 4]; 3] {
+/// The rows of a matrix of the manifest, over the star's illuminance.
+pub fn rgb_rows(manifest: &Manifest, matrix: &str, illuminance: f64) -> [[f32; 4]; 3] {
     let mut out = [[0.0; 4]; 3];
-    if let Some(rows) = manifest.colour.matrices.get("rgb_from_four") {
+    if let Some(rows) = manifest.colour.matrices.get(matrix) {
         for (slot, row) in out.iter_mut().zip(rows) {
             *slot = four(&row.iter().map(|v| v / illuminance).collect::<Vec<_>>());
         }
