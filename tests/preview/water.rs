@@ -43,7 +43,9 @@ fn shaders_answer_what_sample_answers_of_water() {
         for depth in ["0", "0.3", "12", "100"] {
             let wanted = sample_water(bake, water, depth, &views);
             assert!(wanted.iter().filter(|v| v[1] > 0.0).count() > 800, "most views see light");
-            for (layout, hand) in [("compact", None), ("compact", Some("--hand-filtered")), ("elek2010", None)] {
+            for (layout, hand) in
+                [("compact", None), ("compact", Some("--hand-filtered")), ("elek2010", None)]
+            {
                 let mut more = vec!["--water", water, "--depth", depth];
                 more.extend(hand);
                 let (error, k) = worst(&shader(bake, layout, &views, &more), &wanted);
@@ -51,6 +53,31 @@ fn shaders_answer_what_sample_answers_of_water() {
                 assert!(error < 2e-3, "{water} {depth} m: {error} at {:?}: {:?}", views[k], wanted[k]);
             }
         }
+    }
+}
+
+/// Across the nadir, the shell's top and the sun's rise over the water in 200 steps: smooth light changes by some
+/// hundredths of its brightest in a step at most, by less than a thousandth where nothing but the view turns.
+#[test]
+fn water_has_no_seams() {
+    if !gpu() {
+        return;
+    }
+    let bake = wet();
+    let height = constant(bake, "top_radius_m") - constant(bake, "ground_radius_m");
+    let nadir = |t: f64| [3e3, -libm::cos(0.01 * t), 0.4, if t < 0.0 { 180.0 } else { 0.0 }];
+    let top = |t: f64| [height + 5.0 * t, -0.5, 0.4, 60.0];
+    let rise = |t: f64| [0.0, -0.4, 0.05 * t, 60.0];
+    for (name, bound, walk) in
+        [("nadir", 1e-3, &nadir as &dyn Fn(f64) -> [f64; 4]), ("top", 1e-3, &top), ("rise", 0.03, &rise)]
+    {
+        let views: Vec<[f64; 4]> = (0..=200).map(|k| walk(f64::from(k) / 100.0 - 1.0)).collect();
+        let light = shader(bake, "compact", &views, &["--water", "clear-ocean", "--depth", "5"]);
+        let brightest = light.iter().flatten().fold(0.0, |m: f64, v| m.max(*v));
+        let change = |w: &[Vec<f64>]| w[0].iter().zip(&w[1]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let step = light.windows(2).map(change).fold(0.0, f64::max) / brightest;
+        println!("{name}: step {step:.1e}");
+        assert!(brightest > 0.0 && step < bound, "{name}: a step of {step}");
     }
 }
 

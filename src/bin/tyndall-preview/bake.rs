@@ -130,7 +130,8 @@ impl Bake {
     /// Bytes of texels that the textures take.
     pub fn texture_bytes(&self) -> usize {
         let all = [&self.volume, &self.single, &self.depth, &self.scatterers, &self.irradiance, &self.phase];
-        all.iter().map(|t| 8 * t.bits.len()).sum()
+        let water = self.water.iter().flat_map(Water::textures);
+        all.into_iter().chain(water).map(|t| 8 * t.bits.len()).sum()
     }
 
     /// Radius of the ground and of the top, m.

@@ -86,6 +86,10 @@ impl Water {
         };
         Ok(Water { name: name.into(), sky, uniform, textures })
     }
+
+    pub fn textures(&self) -> &[Texels] {
+        &self.textures
+    }
 }
 
 fn absent(bake: &Bake, name: &str) -> Error {
