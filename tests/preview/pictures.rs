@@ -24,7 +24,7 @@ pub fn read_png(path: &Path) -> (usize, usize, Vec<u8>) {
 }
 
 /// Byte of a linear value, IEC 61966-2-1.
-fn coded(x: f64) -> f64 {
+pub fn coded(x: f64) -> f64 {
     let c = if x <= 0.0031308 { 12.92 * x } else { 1.055 * libm::pow(x, 1.0 / 2.4) - 0.055 };
     255.0 * c.clamp(0.0, 1.0)
 }

@@ -103,6 +103,11 @@ fn what_does_not_fit_is_named() {
     }
     refused(&draw(Path::new(earth()), &["--size", "32768x32768"]), 2, &["--size 32768x32768", "pixels"]);
     refused(&draw(Path::new(earth()), &["--g", "0.5"]), 2, &["--g", "elek2010"]);
+    let water = |bake: &str, line: &str| draw(Path::new(bake), &line.split(' ').collect::<Vec<_>>());
+    refused(&water(earth(), "--water muddy"), 2, &["--water muddy", "no waters", "--waters"]);
+    refused(&water(wet(), "--water algae"), 2, &["--water algae", "clear-ocean, muddy"]);
+    refused(&water(wet(), "--water muddy --depth 101"), 2, &["--depth 101", "muddy", "0 to 100 m"]);
+    refused(&water(wet(), "--water muddy --depth -1"), 2, &["--depth -1", "0 to 100 m"]);
     refused(&preview(&[earth(), "--headless"]), 2, &["--out"]);
     let nowhere = preview(&[earth(), "--headless", "--size", "8x8", "--out", "/nowhere/x.png"]);
     refused(&nowhere, 3, &["/nowhere/x.png"]);

@@ -27,6 +27,8 @@ pub struct View {
     pub horizon_mended: bool,
     /// Of the aerosol's phase function in `elek2010`; none: that of the table.
     pub g: Option<f64>,
+    /// m; of the bake's water, where it has one.
+    pub water_depth: f64,
 }
 
 /// `Frame` of `frame.wgsl`.
@@ -40,6 +42,7 @@ pub struct FrameUniform {
     observer: [f32; 4],
     picture: [f32; 4],
     display: [[f32; 4]; 3],
+    water: [f32; 4],
 }
 
 fn with(v: DVec3, w: f64) -> [f32; 4] {
@@ -101,6 +104,7 @@ impl FrameUniform {
             picture: [width.into(), height.into(), camera.pixel_angle(width, height), 0.0]
                 .map(|v: f64| v as f32),
             display: [0, 1, 2].map(|k| with(display.row(k), f64::from(u8::from(view.horizon_mended)))),
+            water: [view.water_depth as f32, 0.0, 0.0, 0.0],
         }
     }
 }

@@ -17,6 +17,7 @@ mod points;
 mod relief;
 mod resources;
 mod screen;
+mod sea;
 mod slicer;
 mod stopwatch;
 mod target;
@@ -52,7 +53,7 @@ fn hush() {
 }
 
 fn run(options: &Options) -> tyndall::Result<()> {
-    let bake = Bake::open(&options.bake, options.layout)?;
+    let bake = Bake::open(&options.bake, options.layout)?.with_water(options.water.as_deref())?;
     if !(options.headless || options.bench || options.points.is_some()) {
         return window::run(options, bake);
     }
@@ -61,7 +62,8 @@ fn run(options: &Options) -> tyndall::Result<()> {
         gpu.device.destroy();
     }
     if let Some(csv) = &options.points {
-        return points::run(&gpu, &bake, csv, options.hand_filtered, &mut std::io::stdout().lock());
+        let depth = options.depth(&bake)?;
+        return points::run(&gpu, &bake, csv, options.hand_filtered, depth, &mut std::io::stdout().lock());
     }
     if options.bench {
         return bench::run(&gpu, &bake, options);

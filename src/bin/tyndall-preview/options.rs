@@ -6,6 +6,7 @@ use crate::exposure::{Exposure, factor};
 use crate::frame::{ToneMapping, View};
 use crate::painter::Look;
 use crate::resources::Method;
+use crate::sea::USUAL_DEPTH;
 use std::path::PathBuf;
 use tyndall::{Error, Result};
 
@@ -56,6 +57,12 @@ pub struct Options {
     /// g of Cornette and Shanks for the aerosol of layout elek2010, in place of the table's phase function
     #[arg(long, value_name = "G", allow_hyphen_values = true, value_parser = asymmetry)]
     pub g: Option<f64>,
+    /// A water of the bake, by its name, where the ground is
+    #[arg(long, value_name = "NAME")]
+    pub water: Option<String>,
+    /// Depth of the water, m [default: 10, or its tables' largest]
+    #[arg(long, value_name = "M", requires = "water", allow_hyphen_values = true)]
+    pub depth: Option<f64>,
     /// Terrain around the observer, seen through the air
     #[arg(long)]
     pub relief: bool,
@@ -156,6 +163,20 @@ impl Options {
         Ok(Look { method: self.method(bake)?, hand_filtered: self.hand_filtered, format, relief })
     }
 
+    /// Depth of the water, m.
+    ///
+    /// # Errors
+    /// `Argument` for one that the water's tables do not hold.
+    pub fn depth(&self, bake: &Bake) -> Result<f64> {
+        let Some(water) = &bake.water else { return Ok(USUAL_DEPTH) };
+        let most = water.sky.largest_depth;
+        let depth = self.depth.unwrap_or(USUAL_DEPTH.min(most));
+        if (0.0..=most).contains(&depth) {
+            return Ok(depth);
+        }
+        Err(Error::Argument(format!("--depth {depth}: the tables of {} hold 0 to {most} m", water.name)))
+    }
+
     /// The frame that the options ask for.
     pub fn view(&self, bake: &Bake) -> Result<View> {
         if self.g.is_some() && bake.layout != Layout::Elek2010 {
@@ -170,7 +191,8 @@ impl Options {
         camera.pitch = self.pitch.unwrap_or(camera.pitch);
         camera.field = self.field.unwrap_or(camera.field);
         let aspect = f64::from(self.size[0]) / f64::from(self.size[1]);
-        let exposure = factor(self.exposure, bake, &camera, aspect);
+        let water_depth = self.depth(bake)?;
+        let exposure = factor(self.exposure, bake, &camera, aspect, water_depth);
         let horizon_mended = !self.bare_difference;
         Ok(View {
             camera,
@@ -179,6 +201,7 @@ impl Options {
             tone_mapping: self.tone_mapping,
             horizon_mended,
             g: self.g,
+            water_depth,
         })
     }
 }

@@ -4,7 +4,8 @@ use crate::bake::Bake;
 use crate::frame::FrameUniform;
 use crate::gpu::Gpu;
 use crate::relief::Relief;
-use crate::resources::{Baked, Method, look_ups, march_resources, overrides, uniform_entry};
+use crate::resources::{Baked, Method, look_ups, march_resources, overrides, uniform_entry, water_look_ups};
+use crate::sea::Sea;
 use crate::slicer::Slicer;
 use crate::target::MEASURED;
 use tyndall::Result;
@@ -28,13 +29,8 @@ pub struct Painter {
     /// By the tables themselves, by slices of them, and by slices where no ground is seen.
     pipelines: [wgpu::RenderPipeline; 3],
     uniform: wgpu::Buffer,
+    /// The uniform, and the water where there is one.
     group: wgpu::BindGroup,
-}
-
-/// One uniform at binding 0.
-pub fn frame_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let entries = &[uniform_entry(0)];
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("frame"), entries })
 }
 
 impl Painter {
@@ -42,7 +38,13 @@ impl Painter {
     /// `Argument` or `File` for a bake that this GPU or this method cannot draw.
     pub fn new(gpu: &Gpu, bake: &Bake, look: &Look) -> Result<Painter> {
         let baked = Baked::new(gpu, bake)?;
-        let frame = frame_layout(gpu);
+        let sea = bake.water.as_ref().map(|water| Sea::new(gpu, water)).transpose()?;
+        let entries: Vec<_> =
+            [uniform_entry(0)].into_iter().chain(sea.iter().flat_map(|_| Sea::layout())).collect();
+        let frame = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("frame"),
+            entries: &entries,
+        });
         let march = match look.method {
             Method::Table => None,
             Method::March { .. } => Some(march_resources(gpu, bake, look.method)?),
@@ -63,10 +65,14 @@ impl Painter {
         };
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let uniform = gpu.buffer(&vec![0; size_of::<FrameUniform>()], usage);
+        let entries: Vec<_> = [wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }]
+            .into_iter()
+            .chain(sea.iter().flat_map(Sea::entries))
+            .collect();
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("frame"),
             layout: &frame,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }],
+            entries: &entries,
         });
         Ok(Painter { baked, slicer, march: march.map(|m| m.group), relief, pipelines, uniform, group })
     }
@@ -128,9 +134,13 @@ fn rows_apart(bake: &Bake, frame: &FrameUniform) -> u32 {
 
 fn source(bake: &Bake, look: &Look) -> String {
     let look_ups = look_ups(bake, look.method) + include_str!("wgsl/frame.wgsl");
+    let surface = match &bake.water {
+        None => include_str!("wgsl/land.wgsl").to_string(),
+        Some(_) => water_look_ups() + include_str!("wgsl/sea.wgsl"),
+    };
     match look.relief {
-        None => look_ups + include_str!("wgsl/bare.wgsl"),
-        Some(_) => look_ups + include_str!("wgsl/relief.wgsl") + include_str!("wgsl/aerial.wgsl"),
+        None => look_ups + &surface + include_str!("wgsl/bare.wgsl"),
+        Some(_) => look_ups + &surface + include_str!("wgsl/relief.wgsl") + include_str!("wgsl/aerial.wgsl"),
     }
 }
 

@@ -12,6 +12,7 @@ const BINDINGS: &str = include_str!("wgsl/bindings.wgsl");
 const SKY_COMPACT: &str = include_str!("wgsl/sky_compact.wgsl");
 const SLICES: &str = include_str!("../../sky/wgsl/slices.wgsl");
 const SKY_MARCH: &str = include_str!("wgsl/sky_march.wgsl");
+const WATER: &str = include_str!("../../sky/wgsl/water.wgsl");
 const SKY_ELEK2010: &str = include_str!("wgsl/sky_elek2010.wgsl");
 
 /// How light is found.
@@ -33,6 +34,11 @@ pub fn look_ups(bake: &Bake, method: Method) -> String {
         (Layout::Elek2010, _) => vec![SHELL, SLICES, ELEK2010, BINDINGS, &tables, SKY_ELEK2010],
     };
     parts.join("\n")
+}
+
+/// The look-ups of a water; wants those of a layout.
+pub fn water_look_ups() -> String {
+    [WATER, include_str!("wgsl/sea_bindings.wgsl")].join("\n")
 }
 
 /// The pass that fills a frame's slices.
@@ -70,7 +76,7 @@ pub fn uniform_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry { binding, visibility: STAGES, ty, count: None }
 }
 
-fn texture_entry(binding: u32, view_dimension: wgpu::TextureViewDimension) -> wgpu::BindGroupLayoutEntry {
+pub fn texture_entry(binding: u32, view_dimension: wgpu::TextureViewDimension) -> wgpu::BindGroupLayoutEntry {
     let sample_type = wgpu::TextureSampleType::Float { filterable: true };
     let ty = wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false };
     wgpu::BindGroupLayoutEntry { binding, visibility: STAGES, ty, count: None }
@@ -189,7 +195,7 @@ pub fn march_resources(gpu: &Gpu, bake: &Bake, method: Method) -> Result<Resourc
     Ok(Resources { layout, group })
 }
 
-fn texture(gpu: &Gpu, texels: &Texels, dimension: wgpu::TextureDimension) -> Result<wgpu::Texture> {
+pub fn texture(gpu: &Gpu, texels: &Texels, dimension: wgpu::TextureDimension) -> Result<wgpu::Texture> {
     use wgpu::util::DeviceExt;
     let limits = gpu.device.limits();
     let most = match dimension {

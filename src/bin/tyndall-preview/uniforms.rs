@@ -1,13 +1,15 @@
 //! What the look-up shaders need of `bake.json`, in the form that `shell.wgsl` declares, written into them as constants:
 //! compilers then drop what a bake does not have, and a pixel loads nothing of it.
 
+use bytemuck::{Pod, Zeroable};
 use tyndall::export::manifest::{EncodingKind, Manifest, Table};
 
 /// As many groups of single scattering as `shell.wgsl` has room for.
 pub const MOST_GROUPS: usize = 6;
 
-/// `Table` of `shell.wgsl`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// `Table` of `shell.wgsl`; a part of the uniform of a water, which changes by a key.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct TableUniform {
     pub size: [f32; 4],
     pub radii: [f32; 4],
@@ -111,10 +113,10 @@ pub fn four(values: &[f64]) -> [f32; 4] {
     out
 }
 
-/// The rows of `rgb_from_four` over the star's illuminance.
-pub fn rgb_rows(manifest: &Manifest, illuminance: f64) -> [[f32; 4]; 3] {
+/// The rows of a matrix of the manifest, over the star's illuminance.
+pub fn rgb_rows(manifest: &Manifest, matrix: &str, illuminance: f64) -> [[f32; 4]; 3] {
     let mut out = [[0.0; 4]; 3];
-    if let Some(rows) = manifest.colour.matrices.get("rgb_from_four") {
+    if let Some(rows) = manifest.colour.matrices.get(matrix) {
         for (slot, row) in out.iter_mut().zip(rows) {
             *slot = four(&row.iter().map(|v| v / illuminance).collect::<Vec<_>>());
         }

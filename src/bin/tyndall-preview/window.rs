@@ -32,7 +32,8 @@ pub fn run(options: &Options, bake: Bake) -> Result<()> {
     events.set_control_flow(ControlFlow::Poll);
     let view = options.view(&bake)?;
     let method = options.method(&bake)?;
-    let controls = Controls::new(&view, options.exposure, method, options.steps, bake.radii());
+    let mut controls = Controls::new(&view, options.exposure, method, options.steps, bake.radii());
+    controls.deepest = deepest(&bake);
     let mut app = App {
         hand_filtered: options.hand_filtered,
         lose_device: options.lose_device,
@@ -74,12 +75,17 @@ struct App {
     /// When the title was last written.
     titled: Option<Instant>,
     /// What the last exposure was found for, and what it was.
-    exposed: Option<((Exposure, Camera, f64), f64)>,
+    exposed: Option<((Exposure, Camera, f64, f64), f64)>,
     /// When the bake's file was last looked at, and when it had been written.
     looked: Instant,
     written: Option<SystemTime>,
     shots: u32,
     failure: Option<tyndall::Error>,
+}
+
+/// The deepest water that can be shown, m; 0 of land.
+fn deepest(bake: &Bake) -> f64 {
+    bake.water.as_ref().map_or(0.0, |w| w.sky.largest_depth)
 }
 
 fn written(folder: &Path) -> Option<SystemTime> {
@@ -123,17 +129,46 @@ impl App {
 
     /// Another bake or layout; what cannot be read leaves the one that is shown, with a line on stderr.
     fn load(&mut self, folder: &Path, layout: Option<Layout>) {
-        let opened = Bake::open(folder, layout);
+        // The water of before, where the new bake has it too.
+        let water = self.bake.water.as_ref().map(|w| w.name.clone());
+        let opened = Bake::open(folder, layout).and_then(|bake| {
+            let kept = water.filter(|name| bake.waters().any(|w| w == name));
+            bake.with_water(kept.as_deref())
+        });
+        self.show(opened);
+        self.written = written(folder);
+    }
+
+    fn show(&mut self, opened: Result<Bake>) {
         let outcome = opened.and_then(|bake| {
             let before = std::mem::replace(&mut self.bake, bake);
             self.exposed = None;
-            self.controls.radii = self.bake.radii();
             self.rebuild().inspect_err(|_| self.bake = before)
         });
-        self.written = written(folder);
+        self.controls.radii = self.bake.radii();
+        self.controls.deepest = deepest(&self.bake);
+        if self.bake.water.is_some() {
+            self.controls.depth = self.controls.depth.min(self.controls.deepest);
+        }
         if let Err(error) = outcome {
             eprintln!("error: {error}");
         }
+    }
+
+    /// The next water of the bake; after the last, land.
+    fn switch_water(&mut self) {
+        let shown = self.bake.water.as_ref().map(|w| w.name.as_str());
+        let next = match shown {
+            None => self.bake.waters().next(),
+            Some(name) => self.bake.waters().skip_while(|w| *w != name).nth(1),
+        };
+        if next.is_none() && shown.is_none() {
+            eprintln!("no waters in this bake (tyndall bake PRESET --waters NAME)");
+            return;
+        }
+        let next = next.map(str::to_string);
+        let opened = Bake::open(&self.bake.folder, Some(self.bake.layout));
+        self.show(opened.and_then(|bake| bake.with_water(next.as_deref())));
     }
 
     fn reload_if_written(&mut self) {
@@ -155,11 +190,12 @@ impl App {
 
     /// What 1 cd/m² becomes, found anew where something has changed.
     fn exposure(&mut self, aspect: f64) -> f64 {
-        let wanted = (self.controls.exposure, self.controls.camera, aspect);
+        let c = &self.controls;
+        let wanted = (c.exposure, c.camera, aspect, c.depth);
         match self.exposed {
             Some((found_for, exposure)) if found_for == wanted => exposure,
             _ => {
-                let exposure = factor(wanted.0, &self.bake, &wanted.1, aspect);
+                let exposure = factor(c.exposure, &self.bake, &c.camera, aspect, c.depth);
                 self.exposed = Some((wanted, exposure));
                 exposure
             }
@@ -170,7 +206,8 @@ impl App {
         let exposure = self.exposure(f64::from(size[0]) / f64::from(size[1]));
         let c = &self.controls;
         let g = c.g.filter(|_| self.bake.layout == Layout::Elek2010);
-        View { camera: c.camera, size, exposure, tone_mapping: c.tone_mapping, horizon_mended: true, g }
+        let (tone_mapping, water_depth) = (c.tone_mapping, c.depth);
+        View { camera: c.camera, size, exposure, tone_mapping, horizon_mended: true, g, water_depth }
     }
 
     /// The title, some times a second: servers take long over it.
@@ -189,8 +226,11 @@ impl App {
             Method::March { sun: 0, .. } => "march, 2D table",
             Method::March { .. } => "march",
         };
+        let water = self.bake.water.as_ref();
+        let water =
+            water.map_or(String::new(), |w| format!(", {} {:.1} m deep", w.name, self.controls.depth));
         format!(
-            "{} {} {method} | {:.0} m, star {:.1}°, EV {:.1} | {fps:.0}/s | {TITLE_KEYS}",
+            "{} {} {method}{water} | {:.0} m, star {:.1}°, EV {:.1} | {fps:.0}/s | {TITLE_KEYS}",
             self.bake.manifest.preset.name,
             self.bake.layout.name(),
             camera.altitude,
@@ -251,6 +291,10 @@ impl App {
             Request::SwitchLayout => {
                 let folder = self.bake.folder.clone();
                 self.load(&folder, Some(self.bake.layout.other()));
+                Ok(())
+            }
+            Request::SwitchWater => {
+                self.switch_water();
                 Ok(())
             }
             Request::Quit => {

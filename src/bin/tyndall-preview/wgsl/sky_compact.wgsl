@@ -38,3 +38,8 @@ fn scattered_here(p: Place, g: f32) -> vec3f {
 fn ground_after(mu_s: f32, through: vec4f) -> vec3f {
     return rgb_of(tables, through * compact_ground(tables, depth, irradiance, filtering, mu_s));
 }
+
+// Light of the sky along a ray, of which `kept` is left at the four wavelengths.
+fn sky_after(p: Place, g: f32, kept: vec4f) -> vec3f {
+    return rgb_of(tables, kept * scattered_at_four(p));
+}
