@@ -2,7 +2,7 @@
 
 pub mod bake;
 pub mod colour;
-mod colour_input;
+pub mod colour_input;
 mod machine;
 mod memory;
 pub mod presets;
