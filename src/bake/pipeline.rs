@@ -146,7 +146,7 @@ impl<'a> Solved<'a> {
         let (paper, settings) = (&self.paper, self.settings);
         let (tables, oddities) = match settings.solver {
             Solver::Moments => elek2010::tables(paper, light, palette, settings.elek2010_size),
-            Solver::Literal { samples } => super::literal::tables(paper, light, palette, settings, samples)?,
+            Solver::Literal { .. } => super::literal::tables(paper, light, palette, settings)?,
         };
         filled.tables.extend(tables);
         let groups = compact::groups(&self.full);
