@@ -5,7 +5,7 @@ use super::palette::Palette;
 use super::settings::{Layout, Settings, Solver};
 use super::tables::Baked;
 use super::water::WaterTables;
-use super::{compact, describe, elek2010, extinction, pictures, report, skies, spectral, water};
+use super::{compact, describe, elek2010, extinction, pictures, report, skies, spectral, three_atmosphere, water};
 use crate::error::{Error, Result};
 use crate::export::manifest::Manifest;
 use crate::medium::Medium;
@@ -45,6 +45,12 @@ pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -
         files.extra.extend(spectral::files(&solved.paper, light, planet, settings)?);
     }
     let mut manifest = describe::manifest(planet, settings, &palette, &solved.full, &files);
+    if let Some(found) = &filled.three_atmosphere {
+        manifest.constants.extend(found.constants.clone());
+        let about = "parameters for the AtmosphereParameters of @takram/three-atmosphere";
+        let path = format!("{}/parameters.json", three_atmosphere::LAYOUT);
+        files.extra.push((path, about.into(), found.parameters.clone().into_bytes()));
+    }
     if let Some(waters) = &filled.waters {
         describe::add_waters(&mut manifest, &settings.waters.list, waters);
     }
@@ -82,10 +88,12 @@ struct Solved<'a> {
 }
 
 /// Tables of all layouts, and what was odd about them.
+#[derive(Default)]
 struct Filled {
     tables: Vec<Baked>,
     counts: Map<String, Value>,
     waters: Option<WaterTables>,
+    three_atmosphere: Option<three_atmosphere::Tables>,
 }
 
 impl<'a> Solved<'a> {
@@ -96,8 +104,8 @@ impl<'a> Solved<'a> {
         let paper = full.similarity();
         let wants = |layout| settings.layouts.contains(&layout);
         stage("solve");
-        let full_light =
-            wants(Layout::Compact).then(|| Solution::new(&full, &Resolution::TABLES, settings.orders));
+        let full_light = (wants(Layout::Compact) || wants(Layout::ThreeAtmosphere))
+            .then(|| Solution::new(&full, &Resolution::TABLES, settings.orders));
         stage("solve paper's medium");
         let paper_light = (wants(Layout::Elek2010) || full_light.is_none())
             .then(|| Solution::new(&paper, &Resolution::PAPER, settings.orders));
@@ -121,16 +129,25 @@ impl<'a> Solved<'a> {
     }
 
     fn fill(&self, palette: &Palette, stage: &mut dyn FnMut(&str)) -> Result<Filled> {
-        let mut filled = Filled { tables: Vec::new(), counts: Map::new(), waters: None };
+        let mut filled = Filled::default();
         if let (true, Some(light)) = (self.settings.layouts.contains(&Layout::Elek2010), &self.paper_light) {
             stage("elek2010 tables");
             self.fill_elek2010(light, palette, &mut filled)?;
         }
-        if let Some(light) = &self.full_light {
+        if let (true, Some(light)) = (self.settings.layouts.contains(&Layout::Compact), &self.full_light) {
             stage("compact tables");
             let (tables, negative) = compact::tables(&self.full, light, palette, self.settings.compact_sizes);
             filled.tables.extend(tables);
             filled.counts.insert("compact multiple scattering below 0, set to dark".into(), json!(negative));
+        }
+        if let (true, Some(light)) = (self.settings.layouts.contains(&Layout::ThreeAtmosphere), &self.full_light)
+        {
+            stage("three-atmosphere tables");
+            let mut found = three_atmosphere::tables(self.planet, &self.full, light, palette)?;
+            filled.tables.append(&mut found.tables);
+            let negative = "three-atmosphere colours outside the gamut, set to 0";
+            filled.counts.insert(negative.into(), json!(found.negative));
+            filled.three_atmosphere = Some(found);
         }
         if !self.settings.waters.list.is_empty() {
             stage("water tables");
@@ -173,17 +190,23 @@ impl<'a> Solved<'a> {
         let mut out = Map::new();
         let truth = self.full_light.as_ref().map(|light| report::truths(&self.full, light));
         out.insert("colour".into(), report::colours(palette, truth.as_deref()));
-        if let (Some(light), Some(truth), Some(sky)) = (&self.full_light, &truth, &skies.compact) {
+        if let Some(light) = &self.full_light {
             out.insert("solver".into(), report::solver(&self.full, light));
+        }
+        if let (Some(truth), Some(sky)) = (&truth, &skies.compact) {
             out.insert("compact_against_direct_integration".into(), report::compact(sky, palette, truth));
+        }
+        if let (Some(truth), Some(sky)) = (&truth, &skies.three_atmosphere) {
+            let errors = report::in_rgb(sky, palette, truth, AerosolPhase::Preset);
+            out.insert("three_atmosphere_against_direct_integration".into(), errors);
         }
         if let (Some(light), Some(sky)) = (&self.paper_light, &skies.paper) {
             out.insert("paper_medium_solver".into(), report::solver(&self.paper, light));
             let own = report::truths(&self.paper, light);
-            let own = report::elek2010(sky, palette, &own, AerosolPhase::Isotropic);
+            let own = report::in_rgb(sky, palette, &own, AerosolPhase::Isotropic);
             out.insert("elek2010_against_its_own_medium".into(), own);
             if let Some(truth) = &truth {
-                let full = report::elek2010(sky, palette, truth, AerosolPhase::Preset);
+                let full = report::in_rgb(sky, palette, truth, AerosolPhase::Preset);
                 out.insert("elek2010_against_the_full_medium".into(), full);
             }
         }
@@ -222,6 +245,7 @@ impl<'a> Solved<'a> {
 struct Skies {
     compact: Option<Sky>,
     paper: Option<Sky>,
+    three_atmosphere: Option<Sky>,
     waters: Vec<WaterSky>,
 }
 
@@ -239,11 +263,13 @@ impl Skies {
             waters: settings.waters.list.iter().map(water).collect::<Result<_>>()?,
             compact: open(Layout::Compact)?,
             paper: open(Layout::Elek2010)?,
+            three_atmosphere: open(Layout::ThreeAtmosphere)?,
         })
     }
 
     fn best(&self) -> &Sky {
-        self.compact.as_ref().or(self.paper.as_ref()).expect("a layout was baked")
+        let all = [&self.compact, &self.paper, &self.three_atmosphere];
+        all.into_iter().flatten().next().expect("a layout was baked")
     }
 
     fn named<'a>(&'a self, waters: &'a [Water]) -> Vec<(&'a str, &'a WaterSky)> {

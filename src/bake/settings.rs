@@ -14,6 +14,8 @@ use serde_json::{Value, json};
 pub enum Layout {
     Elek2010,
     Compact,
+    /// Files of the npm package @takram/three-atmosphere
+    ThreeAtmosphere,
 }
 
 impl Layout {
@@ -21,6 +23,7 @@ impl Layout {
         match self {
             Layout::Elek2010 => super::elek2010::LAYOUT,
             Layout::Compact => super::compact::LAYOUT,
+            Layout::ThreeAtmosphere => super::three_atmosphere::LAYOUT,
         }
     }
 }
