@@ -28,6 +28,7 @@ use gather::Gathered;
 use ray::Ray;
 use rayon::prelude::*;
 
+pub use air::{altitude_along, radius_along};
 pub use gather::Gather;
 
 /// How finely, and how far, Algorithm 1 is run.
