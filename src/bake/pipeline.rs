@@ -28,6 +28,8 @@ pub struct Product {
 const RESIDUAL_WARNING: f64 = 0.01;
 /// Error of the energy balance above which the bake warns.
 const BALANCE_WARNING: f64 = 3e-3;
+/// Error of the tables of a layout on 95 % of views by day above which the bake warns: five times that of the paper's.
+const TABLES_WARNING: f64 = 0.3;
 /// What messages call a bake that is in no folder yet.
 const IN_MEMORY: &str = "the bake in memory";
 
@@ -237,8 +239,30 @@ impl<'a> Solved<'a> {
                 out.push(format!("energy balance of the {key}: {:+.2} % of the light", 100.0 * error));
             }
         }
+        out.extend(coarse_tables(quality));
         out
     }
+}
+
+/// Warnings where the tables of a layout are so coarse that they miss the light of their own medium by day.
+fn coarse_tables(quality: &Map<String, Value>) -> Vec<String> {
+    let own = [
+        ("compact", &["compact_against_direct_integration", "day", "rgb"][..]),
+        ("elek2010", &["elek2010_against_its_own_medium", "day"][..]),
+    ];
+    let error = |path: &[&str]| {
+        let found = path[1..].iter().try_fold(quality.get(path[0])?, |at, key| at.get(key))?;
+        found["p95"].as_f64().filter(|e| *e > TABLES_WARNING)
+    };
+    let warning = |(layout, path): (&str, &[&str])| {
+        error(path).map(|e| {
+            let percent = if e < 100.0 { format!("{:.0} %", 100.0 * e) } else { "any measure".into() };
+            format!(
+                "layout {layout}: one in twenty views by day is off by more than {percent}; --size takes larger tables"
+            )
+        })
+    };
+    own.into_iter().filter_map(warning).collect()
 }
 
 /// The bake as its readers will see it.
