@@ -5,7 +5,9 @@ use super::palette::Palette;
 use super::settings::{Layout, Settings, Solver};
 use super::tables::Baked;
 use super::water::WaterTables;
-use super::{compact, describe, elek2010, extinction, pictures, report, skies, spectral, three_atmosphere, water};
+use super::{
+    compact, describe, elek2010, extinction, pictures, report, skies, spectral, three_atmosphere, water,
+};
 use crate::error::{Error, Result};
 use crate::export::manifest::Manifest;
 use crate::medium::Medium;
@@ -30,6 +32,8 @@ const RESIDUAL_WARNING: f64 = 0.01;
 const BALANCE_WARNING: f64 = 3e-3;
 /// Error of the tables of a layout on 95 % of views by day above which the bake warns: five times that of the paper's.
 const TABLES_WARNING: f64 = 0.3;
+/// Median error by day of the paper's layout against the preset's own medium above which the bake warns.
+const MEDIUM_WARNING: f64 = 0.25;
 /// What messages call a bake that is in no folder yet.
 const IN_MEMORY: &str = "the bake in memory";
 
@@ -142,7 +146,8 @@ impl<'a> Solved<'a> {
             filled.tables.extend(tables);
             filled.counts.insert("compact multiple scattering below 0, set to dark".into(), json!(negative));
         }
-        if let (true, Some(light)) = (self.settings.layouts.contains(&Layout::ThreeAtmosphere), &self.full_light)
+        if let (true, Some(light)) =
+            (self.settings.layouts.contains(&Layout::ThreeAtmosphere), &self.full_light)
         {
             stage("three-atmosphere tables");
             let mut found = three_atmosphere::tables(self.planet, &self.full, light, palette)?;
@@ -228,6 +233,7 @@ impl<'a> Solved<'a> {
     fn warnings(&self, quality: &Map<String, Value>) -> Vec<String> {
         let mut out = self.planet.warnings.clone();
         out.extend(outside_vision(&self.settings.wavelengths_nm));
+        out.extend(few_wavelengths(&self.settings.wavelengths_nm));
         let waters = &self.settings.waters.list;
         out.extend(waters.iter().flat_map(|w| w.warnings.iter().map(|t| format!("{}: {t}", w.name))));
         for (name, light) in [("full", &self.full_light), ("paper's", &self.paper_light)] {
@@ -262,7 +268,17 @@ fn coarse_tables(quality: &Map<String, Value>) -> Vec<String> {
             )
         })
     };
-    own.into_iter().filter_map(warning).collect()
+    let mut out: Vec<String> = own.into_iter().filter_map(warning).collect();
+    let simplified =
+        quality.get("elek2010_against_the_full_medium").and_then(|q| q["day"]["median"].as_f64());
+    if let Some(error) = simplified.filter(|e| *e > MEDIUM_WARNING) {
+        out.push(format!(
+            "layout elek2010: its isotropic haze is not this planet's: half of the views by day are off by more than \
+             {:.0} %; layout compact holds the medium as it is",
+            100.0 * error
+        ));
+    }
+    out
 }
 
 /// The bake as its readers will see it.
@@ -311,6 +327,14 @@ fn outside_vision(nm: &[f64]) -> Option<String> {
              of the preset are held at their ends where they are not given",
             nm.len()
         )
+    })
+}
+
+/// A warning where there are fewer wavelengths than colours have dimensions.
+fn few_wavelengths(nm: &[f64]) -> Option<String> {
+    (nm.len() < 3).then(|| {
+        let (n, s) = (nm.len(), if nm.len() == 1 { "" } else { "s" });
+        format!("{n} wavelength{s}: colours need three, those of this bake are of one kind of sky; radiance is exact")
     })
 }
 

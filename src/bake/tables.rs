@@ -35,7 +35,8 @@ impl Baked {
     /// layout three-atmosphere.
     pub fn atlas(&self) -> Atlas {
         let name = format!("{}/{}", self.layout, self.name);
-        let sides = |across: usize| [0..across, across..across + 1, across + 1..4].map(|axes| self.texels_of(axes));
+        let sides =
+            |across: usize| [0..across, across..across + 1, across + 1..4].map(|axes| self.texels_of(axes));
         let mut atlas = if self.layout == three_atmosphere::LAYOUT {
             // Its reader wants x to be all but the last two axes.
             let across = self.axes.len().saturating_sub(2).max(1);

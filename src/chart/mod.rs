@@ -7,14 +7,14 @@
 pub mod draw;
 mod front;
 mod measure;
+mod row;
 pub mod stability;
-mod table;
 mod truth;
 mod work;
 
-pub use front::{Cost, Exception, exceptions, front, value};
+pub use front::{Cost, Measure, Quantity, Statistic, exceptions, front, mark};
 pub use measure::{Errors, Measured};
-pub use table::{checks_csv, csv};
+pub use row::{Row, checks_csv, read_csv, rows, to_csv};
 pub use truth::{Check, Scene, Truth};
 
 use crate::error::Result;

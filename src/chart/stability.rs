@@ -79,7 +79,10 @@ pub fn cases() -> Result<Vec<Case>> {
     planet("no air", earth(|p| p.constituents.clear()))?;
     planet("gas alone", earth(|p| p.constituents.truncate(1)))?;
     planet("aerosol alone", earth(|p| drop(p.constituents.remove(0))))?;
-    planet("absorber alone", earth(|p| p.constituents = vec![Substance { optics: grey(0.0, 2e-5), ..air(p) }]))?;
+    planet(
+        "absorber alone",
+        earth(|p| p.constituents = vec![Substance { optics: grey(0.0, 2e-5), ..air(p) }]),
+    )?;
     planet("earth without ozone", without_ozone())?;
     planet("400 km planet, 60 km of air", earth(|p| (p.ground_radius, p.top_radius) = (400e3, 460e3)))?;
     planet("planet of ten Jupiters", earth(|p| (p.ground_radius, p.top_radius) = (7e8, 7e8 + 60e3)))?;
@@ -99,9 +102,11 @@ pub fn cases() -> Result<Vec<Case>> {
     };
     setting("1 wavelength", &|s| s.wavelengths_nm = grid(1))?;
     setting("81 wavelengths", &|s| s.wavelengths_nm = grid(81))?;
-    let with = |axis: usize| move |s: &mut Settings| {
-        for size in [&mut s.elek2010_size, &mut s.compact_sizes.single, &mut s.compact_sizes.multiple] {
-            size[axis] = 2;
+    let with = |axis: usize| {
+        move |s: &mut Settings| {
+            for size in [&mut s.elek2010_size, &mut s.compact_sizes.single, &mut s.compact_sizes.multiple] {
+                size[axis] = 2;
+            }
         }
     };
     setting("2 altitudes", &with(0))?;
@@ -179,8 +184,14 @@ pub fn run(case: &Case, ours: bool) -> Vec<Outcome> {
 
 fn outcome(method: &dyn Method, planet: &Planet, views: &[Point], truth: &[[f64; 3]]) -> Outcome {
     let family = method.family();
-    let mut out =
-        Outcome { family, refused: None, views: views.len(), not_finite: 0, negative: 0, error: Distribution::default() };
+    let mut out = Outcome {
+        family,
+        refused: None,
+        views: views.len(),
+        not_finite: 0,
+        negative: 0,
+        error: Distribution::default(),
+    };
     match method.prepare(planet) {
         Err(error) => out.refused = Some(error.to_string()),
         Ok(prepared) => out.look(prepared.sky.as_ref(), views, truth),
@@ -247,7 +258,8 @@ fn truth(planet: &Planet, views: &[Point]) -> Vec<[f64; 3]> {
 /// The outcomes as a table in Markdown, a row a case.
 pub fn markdown(outcomes: &[(&'static str, Vec<Outcome>)]) -> String {
     let families = |f: &dyn Fn(Family) -> String| Family::ALL.map(f).join(" | ");
-    let mut out = format!("| case | {} |\n|---|{}\n", families(&|f| short(f).into()), "---|".repeat(Family::ALL.len()));
+    let mut out =
+        format!("| case | {} |\n|---|{}\n", families(&|f| short(f).into()), "---|".repeat(Family::ALL.len()));
     for (name, list) in outcomes {
         let cell = |f: Family| list.iter().find(|o| o.family == f).map_or(String::new(), told);
         out.push_str(&format!("| {name} | {} |\n", families(&cell)));

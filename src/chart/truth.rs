@@ -14,7 +14,8 @@ use serde::{Deserialize, Serialize};
 
 /// One batch of the solver's lanes; none but 380, 550 and 780 nm is one that bakes sample by default.
 const WAVELENGTHS_NM: [f64; 16] = [
-    380.0, 405.0, 430.0, 455.0, 480.0, 505.0, 528.0, 550.0, 575.0, 600.0, 625.0, 650.0, 680.0, 710.0, 745.0, 780.0,
+    380.0, 405.0, 430.0, 455.0, 480.0, 505.0, 528.0, 550.0, 575.0, 600.0, 625.0, 650.0, 680.0, 710.0, 745.0,
+    780.0,
 ];
 /// Of these, the one that Monte Carlo looks at.
 const CHECKED: usize = 7;

@@ -2,15 +2,19 @@
 
 use super::machine::with_threads;
 use super::text::print;
-use crate::chart::draw::{Quantity, Statistic, pictures};
+use crate::chart::draw::pictures;
 use crate::chart::stability::{Case, cases, markdown, run as run_case};
-use crate::chart::{Chart, Cost, Effort, Exception, checks_csv, csv, exceptions, front, measure};
+use crate::chart::{
+    Chart, Check, Cost, Effort, Measure, Quantity, Row, Statistic, checks_csv, exceptions, front, mark,
+    measure, read_csv, rows, to_csv,
+};
 use crate::error::{Error, Result};
 use crate::methods::{Method, catalogue};
-use crate::preset;
+use crate::preset::{self, Planet};
 use crate::quality::{REGIONS, digits};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
@@ -39,6 +43,9 @@ pub struct Args {
     /// Of its distribution over views; the CSV holds all
     #[arg(long, value_enum, default_value = "p95")]
     statistic: Statistic,
+    /// Draw again from the CSV in the folder, without measuring
+    #[arg(long, conflicts_with_all = ["views", "only", "set", "stability"])]
+    redraw: bool,
     /// Replace a value of the preset, path.to.key=value; repeatable
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
@@ -64,20 +71,43 @@ fn count(text: &str) -> std::result::Result<usize, String> {
 pub fn run(args: &Args) -> Result<()> {
     let Some(preset) = &args.preset else { return stability(args) };
     let planet = preset::load(preset, &args.set)?;
+    let csv = args.out.join(format!("{}.csv", planet.name));
+    let (rows, checks) = if args.redraw {
+        (read_csv(&csv)?, Vec::new())
+    } else {
+        let chart = measured(args, &planet)?;
+        let mut rows = rows(&chart);
+        mark(&mut rows);
+        write(&args.out, &format!("{}.csv", planet.name), &to_csv(&rows)?)?;
+        write(&args.out, &format!("{}-checks.csv", planet.name), checks_csv(&chart).as_bytes())?;
+        (rows, chart.checks)
+    };
+    let (svg, png) = pictures(&rows, Measure(args.error, args.statistic))?;
+    write(&args.out, &format!("{}.svg", planet.name), svg.as_bytes())?;
+    write(&args.out, &format!("{}.png", planet.name), &png)?;
+    let work = work_folder(args, &planet);
+    if work.exists() && !args.redraw {
+        std::fs::remove_dir_all(&work).map_err(|e| Error::machine(&work, e))?;
+    }
+    if args.json {
+        return print(&format!("{}\n", summary(&rows, &checks)));
+    }
+    print(&text(&rows, &checks))
+}
+
+fn work_folder(args: &Args, planet: &Planet) -> PathBuf {
+    args.out.join(format!("{}.work", planet.name))
+}
+
+fn measured(args: &Args, planet: &Planet) -> Result<Chart> {
     let methods = chosen(args)?;
-    let work = args.out.join(format!("{}.work", planet.name));
     let effort = Effort { views: args.views, ..Effort::default() };
     let bar = bar(args);
     let tell = |part: &str, done: usize, all: usize| told(args, &bar, part, done, all);
-    let chart = with_threads(args.threads, || measure(&planet, &methods, effort, &work, &tell))??;
+    let folder = work_folder(args, planet);
+    let chart = with_threads(args.threads, || measure(planet, &methods, effort, &folder, &tell))??;
     bar.finish_and_clear();
-    let (svg, png) = pictures(&chart, args.error, args.statistic)?;
-    write(&args.out, &format!("{}.csv", chart.planet), csv(&chart).as_bytes())?;
-    write(&args.out, &format!("{}-checks.csv", chart.planet), checks_csv(&chart).as_bytes())?;
-    write(&args.out, &format!("{}.svg", chart.planet), svg.as_bytes())?;
-    write(&args.out, &format!("{}.png", chart.planet), &png)?;
-    std::fs::remove_dir_all(&work).map_err(|e| Error::machine(&work, e))?;
-    if args.json { print(&format!("{}\n", summary(&chart))) } else { print(&text(&chart)) }
+    Ok(chart)
 }
 
 fn stability(args: &Args) -> Result<()> {
@@ -133,37 +163,32 @@ fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<()> {
     std::fs::rename(&beside, &path).map_err(|e| Error::machine(&path, e))
 }
 
-fn of(chart: &Chart, n: usize) -> String {
-    format!("{}: {}", chart.methods[n].family.title(), chart.methods[n].setting)
-}
-
-fn text(chart: &Chart) -> String {
+/// Fronts, failures, exceptions by cost and method, and what Monte Carlo says.
+fn text(rows: &[Row], checks: &[Check]) -> String {
     let mut out = String::new();
-    for (region, named) in REGIONS.iter().enumerate() {
+    for region in REGIONS.map(|r| r.name) {
         for cost in Cost::ALL {
-            out.push_str(&format!("{}, front by {}:\n", named.name, cost.name()));
-            for n in front(chart, region, cost) {
-                let m = &chart.methods[n];
-                let e = m.errors(&chart.truth, region).expect("what is on a front answers");
+            out.push_str(&format!("{region}, front by {}:\n", cost.label()));
+            for row in front(rows, region, cost, Measure::DEFAULT) {
+                let [median, p95, worst] = [row.delta_e_median, row.delta_e_p95, row.delta_e_worst]
+                    .map(|e| e.unwrap_or(f64::INFINITY));
+                let cost = digits(cost.of(row));
                 out.push_str(&format!(
-                    "  {:>10}  ΔE2000 {:.3} {:.3} {:.3}  {}\n",
-                    digits(cost.of(m)),
-                    e.delta_e.median,
-                    e.delta_e.p95,
-                    e.delta_e.max,
-                    of(chart, n)
+                    "  {cost:>10}  ΔE2000 {median:.3} {p95:.3} {worst:.3}  {}\n",
+                    row.name()
                 ));
             }
         }
     }
-    for m in chart.methods.iter().filter(|m| m.failure.is_some()) {
-        let reason = m.failure.as_deref().unwrap_or_default();
-        out.push_str(&format!("no answer: {}: {}: {reason}\n", m.family.title(), m.setting));
+    for row in rows.iter().filter(|r| !r.failure.is_empty() && r.region == REGIONS[0].name) {
+        out.push_str(&format!("no answer: {}: {}\n", row.name(), row.failure));
     }
-    for Exception { region, cost, method } in exceptions(chart) {
-        out.push_str(&format!("not dominated: {region}, {}: {}\n", cost.name(), of(chart, method)));
+    for cost in Cost::ALL {
+        for (name, regions) in not_dominated(rows, cost) {
+            out.push_str(&format!("not dominated by {}: {name} ({})\n", cost.name(), regions.join("; ")));
+        }
     }
-    for c in &chart.checks {
+    for c in checks {
         let (difference, sigma) = (c.monte_carlo / c.truth - 1.0, c.stderr / c.truth);
         let (difference, sigma) = (100.0 * difference, 100.0 * sigma);
         out.push_str(&format!("Monte Carlo, {}: {difference:+.2} ± {sigma:.2} %\n", REGIONS[c.region].name));
@@ -171,23 +196,37 @@ fn text(chart: &Chart) -> String {
     out
 }
 
-fn summary(chart: &Chart) -> Value {
-    let fronts = REGIONS.iter().enumerate().flat_map(|(region, named)| {
+/// Methods of others that none of ours dominates, with the regions where that is so.
+fn not_dominated(rows: &[Row], cost: Cost) -> BTreeMap<String, Vec<&'static str>> {
+    let mut out: BTreeMap<String, Vec<&'static str>> = BTreeMap::new();
+    for region in REGIONS.map(|r| r.name) {
+        for row in exceptions(rows, region, cost) {
+            out.entry(row.name()).or_default().push(region);
+        }
+    }
+    out
+}
+
+fn summary(rows: &[Row], checks: &[Check]) -> Value {
+    let fronts = REGIONS.iter().flat_map(|region| {
         Cost::ALL.map(|cost| {
-            let names: Vec<String> = front(chart, region, cost).into_iter().map(|n| of(chart, n)).collect();
-            json!({ "region": named.name, "cost": cost.name(), "front": names })
+            let front = front(rows, region.name, cost, Measure::DEFAULT);
+            let names: Vec<String> = front.into_iter().map(Row::name).collect();
+            json!({ "region": region.name, "cost": cost.name(), "front": names })
         })
     });
-    let exceptions = exceptions(chart);
-    let exceptions = exceptions
-        .iter()
-        .map(|e| json!({ "region": e.region, "cost": e.cost.name(), "method": of(chart, e.method) }));
-    let checks = chart.checks.iter().map(|c| {
+    let exceptions = Cost::ALL.into_iter().flat_map(|cost| {
+        let found = not_dominated(rows, cost).into_iter();
+        found.map(
+            move |(method, regions)| json!({ "cost": cost.name(), "method": method, "regions": regions }),
+        )
+    });
+    let checks = checks.iter().map(|c| {
         json!({ "region": REGIONS[c.region].name, "view": c.view, "truth_per_sr": c.truth,
                 "monte_carlo_per_sr": c.monte_carlo, "stderr_per_sr": c.stderr })
     });
     json!({
-        "preset": chart.planet,
+        "preset": rows.first().map(|r| r.preset.as_str()),
         "fronts": fronts.collect::<Vec<_>>(),
         "not_dominated": exceptions.collect::<Vec<_>>(),
         "checks": checks.collect::<Vec<_>>(),

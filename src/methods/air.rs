@@ -151,7 +151,9 @@ mod tests {
     fn three_constants_are_the_colour_of_the_star() {
         let air = Air::new(&crate::preset::load("earth-blog", &[]).unwrap());
         let white = air.colour([1.0; 3]);
-        assert!((white[0] - 1.474 / 1.7748).abs() < 1e-4 && (white[2] / white[0] - 1.91198 / 1.474).abs() < 1e-9);
+        assert!(
+            (white[0] - 1.474 / 1.7748).abs() < 1e-4 && (white[2] / white[0] - 1.91198 / 1.474).abs() < 1e-9
+        );
     }
 
     /// Straight up the length is the height of the shell, and a level ray from the ground follows Pythagoras; downwards
@@ -163,6 +165,8 @@ mod tests {
         assert!((air.length(g, 1.0, false) - (t - g)).abs() < 1e-3);
         assert!((air.length(g, 0.0, false) - (t * t - g * g).sqrt()).abs() < 1e-3);
         assert!((air.length(g + 1e4, -1.0, true) - 1e4).abs() < 1e-3);
-        assert!(air.is_blocked(g + 1e4, -0.5) && !air.is_blocked(g + 1e4, -0.01) && !air.is_blocked(g + 1e4, 0.2));
+        assert!(
+            air.is_blocked(g + 1e4, -0.5) && !air.is_blocked(g + 1e4, -0.01) && !air.is_blocked(g + 1e4, 0.2)
+        );
     }
 }

@@ -102,7 +102,8 @@ struct Tables {
 impl Tables {
     fn open(product: Product, layout: &str, storage: Storage) -> Result<Self> {
         let mut manifest = product.manifest.clone();
-        let files: BTreeMap<&str, &[u8]> = product.files.iter().map(|(f, b)| (f.as_str(), b.as_slice())).collect();
+        let files: BTreeMap<&str, &[u8]> =
+            product.files.iter().map(|(f, b)| (f.as_str(), b.as_slice())).collect();
         let mut pictures = BTreeMap::new();
         for table in manifest.tables.iter_mut().filter(|t| t.layout == layout) {
             let mut atlas = exr::from_exr_bytes(Path::new(&table.file), files[table.file.as_str()])?;
@@ -144,7 +145,8 @@ fn store(table: &mut Table, atlas: &mut Atlas, storage: Storage) {
         Storage::LinearHalves if table.encoding.kind == EncodingKind::Log => {
             let log = table.encoding.clone();
             let largest = atlas.channels.iter().map(|c| log.decode(c.samples.range()[1])).fold(0.0, f64::max);
-            let scale = if largest > 0.0 { libm::exp2(libm::floor(libm::log2(32768.0 / largest))) } else { 1.0 };
+            let scale =
+                if largest > 0.0 { libm::exp2(libm::floor(libm::log2(32768.0 / largest))) } else { 1.0 };
             for channel in &mut atlas.channels {
                 let values = (0..channel.samples.len()).map(|n| f64::from(channel.samples.get(n)));
                 channel.samples = Samples::half(values.map(|v| scale * log.decode(v)).collect::<Vec<_>>());

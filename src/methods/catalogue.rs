@@ -75,7 +75,10 @@ fn bruneton() -> Vec<BakedTables> {
         settings: Settings::default(),
         storage,
     };
-    vec![of("256×128×32, RGB and red of Mie", Storage::RedOfMie), of("256×128×32, RGB and Mie apart", Storage::AsBaked)]
+    vec![
+        of("256×128×32, RGB and red of Mie", Storage::RedOfMie),
+        of("256×128×32, RGB and Mie apart", Storage::AsBaked),
+    ]
 }
 
 fn elek2010() -> Vec<BakedTables> {
@@ -83,7 +86,12 @@ fn elek2010() -> Vec<BakedTables> {
         family: Family::Elek2010,
         setting: format!("{}{about}", size_of(size)),
         layout: Layout::Elek2010,
-        settings: Settings { elek2010_size: size, orders, wavelengths_nm: grid(wavelengths), ..Settings::default() },
+        settings: Settings {
+            elek2010_size: size,
+            orders,
+            wavelengths_nm: grid(wavelengths),
+            ..Settings::default()
+        },
         storage: Storage::AsBaked,
     };
     let all = Settings::default().orders;

@@ -20,8 +20,8 @@ use crate::preset::Planet;
 use crate::table::{Array, Elek2010, texel};
 use crate::transport::azimuth::midpoint_azimuths;
 use crate::transport::fill::{Painter, RayLight, SunPairs, Wanted};
-use crate::transport::view::View;
 use crate::transport::solve::{Orders, Resolution, Solution};
+use crate::transport::view::View;
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_1_PI, PI};
 
@@ -66,8 +66,11 @@ type PhaseLaws = [PhaseFunction; 3];
 impl Sky {
     fn new(planet: &Planet, size: [usize; 3]) -> Self {
         let medium = planet.medium(&WAVELENGTHS_NM);
-        let solution =
-            Solution::new(&medium, &Resolution::TABLES, Orders::Converged { tolerance: crate::bake::settings::TOLERANCE });
+        let solution = Solution::new(
+            &medium,
+            &Resolution::TABLES,
+            Orders::Converged { tolerance: crate::bake::settings::TOLERANCE },
+        );
         let [altitudes, views, suns] = size;
         let map = Elek2010::new(medium.ground_radius, medium.top_radius, [altitudes, views, suns, 2]);
         let map = map.expect("sizes are this project's own");
@@ -153,7 +156,9 @@ impl PreparedSky for Sky {
         }
         if view.hits_ground {
             let length = self.air.length(view.r, view.mu, true);
-            let ground = self.air.colour(self.ground(on_ray(&view, altitude, length).mu_s, self.seen(&view, altitude)));
+            let ground = self
+                .air
+                .colour(self.ground(on_ray(&view, altitude, length).mu_s, self.seen(&view, altitude)));
             (0..3).for_each(|c| out[c] += ground[c]);
         }
         out

@@ -114,7 +114,8 @@ impl March {
         if view.hits_ground {
             let ground = on_ray(view, altitude, length);
             let ground = OnRay { altitude: 0.0, r: air.ground_radius, ..ground };
-            let sun = if ground.mu_s > 0.0 { self.sample(&ground, &mut densities, &mut to_sun) } else { [0.0; 3] };
+            let sun =
+                if ground.mu_s > 0.0 { self.sample(&ground, &mut densities, &mut to_sun) } else { [0.0; 3] };
             let (light, seen) = (air.ground(sun, ground.mu_s), through(air.depth(&passed)));
             (0..3).for_each(|c| out[c] += light[c] * seen[c]);
         }

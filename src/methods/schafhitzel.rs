@@ -88,7 +88,8 @@ impl Ray {
         let step = air.length(view.r, view.mu, view.hits_ground) / STEPS as f64;
         let (mut densities, mut seen, mut passed) = (Vec::new(), Vec::new(), vec![0.0; air.parts.len()]);
         for k in 0..STEPS {
-            let here: Vec<f64> = air.densities(on_ray(&view, altitude, (k as f64 + 0.5) * step).altitude).collect();
+            let here: Vec<f64> =
+                air.densities(on_ray(&view, altitude, (k as f64 + 0.5) * step).altitude).collect();
             passed.iter_mut().zip(&here).for_each(|(p, d)| *p += 0.5 * step * d);
             seen.push(through(air.depth(&passed)));
             passed.iter_mut().zip(&here).for_each(|(p, d)| *p += 0.5 * step * d);

@@ -54,11 +54,20 @@ impl ThreeAtmosphere {
         let radius = |name: &str| source.number(name);
         let (shape, size) = (&source.table("scattering")?.0.shape, Bruneton::SIZE);
         let mapping = Bruneton::new(radius("ground_radius_m")?, radius("top_radius_m")?, size)
-            .filter(|_| *shape == [size[2], size[3], size[1], size[0]] && source.table("single_mie_scattering").is_ok_and(|t| t.0.shape == *shape))
-            .ok_or_else(|| source.refuse(format!("bake.json: tables.scattering.shape = {shape:?} is not the package's")))?;
+            .filter(|_| {
+                *shape == [size[2], size[3], size[1], size[0]]
+                    && source.table("single_mie_scattering").is_ok_and(|t| t.0.shape == *shape)
+            })
+            .ok_or_else(|| {
+                source.refuse(format!("bake.json: tables.scattering.shape = {shape:?} is not the package's"))
+            })?;
         let colour = |name: &str| {
             let list = source.constant(name)?;
-            if list.len() == 3 { Ok(list) } else { Err(source.refuse(format!("bake.json: constants.{name}: not three numbers"))) }
+            if list.len() == 3 {
+                Ok(list)
+            } else {
+                Err(source.refuse(format!("bake.json: constants.{name}: not three numbers")))
+            }
         };
         Ok(ThreeAtmosphere {
             mapping,
@@ -107,7 +116,12 @@ impl ThreeAtmosphere {
             Some(_) if all[0] <= 0.0 => [0.0; 4],
             Some(ratio) => {
                 let red = all[3] / all[0];
-                [all[0] * red, all[1] * red * (ratio[1] / ratio[0]), all[2] * red * (ratio[2] / ratio[0]), 0.0]
+                [
+                    all[0] * red,
+                    all[1] * red * (ratio[1] / ratio[0]),
+                    all[2] * red * (ratio[2] / ratio[0]),
+                    0.0,
+                ]
             }
         };
         let gas = PhaseFunction::Rayleigh { king_factor: 1.0 }.value(p.nu);

@@ -31,7 +31,8 @@ impl Bruneton {
     pub fn new(ground_radius: f64, top_radius: f64, size: [usize; 4]) -> Option<Self> {
         let shell = Elek2010::new(ground_radius, top_radius, size)?;
         let mu_s_min = shell.mu_s_min();
-        let (shortest, longest) = (top_radius - ground_radius, shell.horizon_distance(top_radius - ground_radius));
+        let (shortest, longest) =
+            (top_radius - ground_radius, shell.horizon_distance(top_radius - ground_radius));
         let mut mapping = Bruneton { shell, mu_s_min, shortest, longest, lowest: 1.0, nu_size: size[3] };
         mapping.lowest = mapping.steps(mu_s_min);
         Some(mapping)

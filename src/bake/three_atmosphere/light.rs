@@ -64,7 +64,15 @@ impl Look {
     }
 
     /// Adds one batch's light along a ray.
-    fn add(&self, colours: &Colours, light: &RayLight, batch: &Batch, mu: f32, pairs: &SunPairs, out: &mut [Light]) {
+    fn add(
+        &self,
+        colours: &Colours,
+        light: &RayLight,
+        batch: &Batch,
+        mu: f32,
+        pairs: &SunPairs,
+        out: &mut [Light],
+    ) {
         let phases: Vec<&Phase> = self.groups.iter().map(|g| &batch.optics.phase[g[0]]).collect();
         let sine = (1.0 - mu * mu).max(0.0).sqrt();
         crate::isa::run(
@@ -156,14 +164,17 @@ fn add_sky(
     for batch in &solution.batches {
         let painter = Painter::new(solution, batch, &look.groups).together();
         let colours = Colours::new(palette, batch);
-        for d in directions(r, medium.ground_radius, medium.top_radius, HEIGHTS).iter().filter(|d| d.mu > 0.0) {
+        for d in directions(r, medium.ground_radius, medium.top_radius, HEIGHTS).iter().filter(|d| d.mu > 0.0)
+        {
             painter.ray(r, d.mu, false, pairs, Wanted::Both, &mut light);
             sky.fill(Light::default());
             look.add(&colours, &light, batch, d.mu as f32, pairs, &mut sky);
             let weight = 2.0 * PI * d.mu * d.weight / AZIMUTHS as f64;
             for (texel, lights) in row.iter_mut().zip(sky.chunks(AZIMUTHS)) {
                 for l in lights {
-                    (0..3).for_each(|c| texel[c] += weight * f64::from(l.gas[c] + l.aerosol[c] + l.multiple[c]));
+                    (0..3).for_each(|c| {
+                        texel[c] += weight * f64::from(l.gas[c] + l.aerosol[c] + l.multiple[c])
+                    });
                 }
             }
         }

@@ -29,8 +29,10 @@ pub fn best_g(medium: &Medium, palette: &Palette, mapping: &Bruneton) -> f64 {
     }
     let nodes: Vec<f64> = (0..mapping.size()[3]).map(|l| mapping.nu(l)).collect();
     let stored: Vec<f64> = nodes.iter().map(|&nu| mean(nu)).collect();
-    let wanted: Vec<(f64, f64)> =
-        (0..ANGLES).map(|k| libm::cos((k as f64 + 0.5) * PI / ANGLES as f64)).map(|nu| (nu, mean(nu))).collect();
+    let wanted: Vec<(f64, f64)> = (0..ANGLES)
+        .map(|k| libm::cos((k as f64 + 0.5) * PI / ANGLES as f64))
+        .map(|nu| (nu, mean(nu)))
+        .collect();
     let error = |g: f64| -> f64 {
         let ratio: Vec<f64> = nodes.iter().zip(&stored).map(|(&nu, p)| p / cornette_shanks(g, nu)).collect();
         let relative = |&(nu, p): &(f64, f64)| {

@@ -73,8 +73,11 @@ pub fn all(
         let axes = [2, 3, 1, 0].map(|k| axis(&axes[k])).to_vec();
         table(name, quantity, "cd/m^2 sr", axes, Encoding::linear(1.0 / scale), texels)
     };
-    let mut scattering =
-        volume("scattering", "light but that scattered once by aerosols, over the Rayleigh phase function", 0);
+    let mut scattering = volume(
+        "scattering",
+        "light but that scattered once by aerosols, over the Rayleigh phase function",
+        0,
+    );
     scattering.channels[3].quantity = "R of single_mie_scattering".into();
     scattering.channels[3].unit = "cd/m^2 sr".into();
     scattering.channels[3].encoding = None;
@@ -83,9 +86,13 @@ pub fn all(
         "light scattered once by aerosols, over the phase function of Cornette & Shanks",
         1,
     );
-    let higher =
-        volume("higher_order_scattering", "light scattered more than once, over the Rayleigh phase function", 2);
-    let sky = irradiance(&sky.iter().map(|v| with_alpha(v.map(store), 1.0)).collect::<Vec<_>>(), mapping, scale);
+    let higher = volume(
+        "higher_order_scattering",
+        "light scattered more than once, over the Rayleigh phase function",
+        2,
+    );
+    let sky =
+        irradiance(&sky.iter().map(|v| with_alpha(v.map(store), 1.0)).collect::<Vec<_>>(), mapping, scale);
     (vec![scattering, single, higher, transmittance(solution, palette, mapping), sky], negative)
 }
 
@@ -155,7 +162,13 @@ fn irradiance(texels: &[[f32; 4]], mapping: &Bruneton, scale: f64) -> Baked {
         constants: constants.iter().map(|(k, v)| (k.to_string(), *v)).collect(),
         unit: unit.into(),
     };
-    let sun = named("sun", suns, "(1 + mu_s) / 2. Inverse: mu_s = 2 x - 1", &[("mu_s_min", irradiance_mu_s(0))], "1");
+    let sun = named(
+        "sun",
+        suns,
+        "(1 + mu_s) / 2. Inverse: mu_s = 2 x - 1",
+        &[("mu_s_min", irradiance_mu_s(0))],
+        "1",
+    );
     let altitude = named(
         "altitude",
         altitudes,

@@ -32,8 +32,8 @@ pub fn header(atlas: &Atlas) -> Header {
     // After the caller's, which cannot replace them.
     let packing = PACKING.into_iter().zip(packing(atlas));
     let packing = packing.map(|(name, n)| (text(name), AttributeValue::I32(n as i32)));
-    let turned = (atlas.origin == Origin::BottomLeft)
-        .then(|| (text(ORIGIN.0), AttributeValue::Text(text(ORIGIN.1))));
+    let turned =
+        (atlas.origin == Origin::BottomLeft).then(|| (text(ORIGIN.0), AttributeValue::Text(text(ORIGIN.1))));
     let other = custom.chain(packing).chain(turned).collect();
     let attributes = LayerAttributes { other, ..Default::default() };
     Header::new(text(""), (atlas.width * atlas.columns, atlas.height * atlas.rows()), channels)
