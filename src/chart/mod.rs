@@ -44,7 +44,7 @@ pub struct Effort {
 
 impl Default for Effort {
     fn default() -> Self {
-        Effort { views: 40, checked: 2, paths: 1 << 15 }
+        Effort { views: 40, checked: 2, paths: 1 << 13 }
     }
 }
 
