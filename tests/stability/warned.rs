@@ -10,12 +10,12 @@ fn warnings(settings: &Settings) -> Vec<String> {
     bake(&planet, settings, &mut |_| {}).unwrap().manifest.warnings
 }
 
-/// Two texels on the axis of the sun make a straight line of night and noon: both layouts warn; and of one wavelength no
-/// colour can be made. Tables of the default size say nothing of the kind.
+/// Two texels on the axis of the sun make a straight line of night and noon, two views one brightness of the sky: either
+/// layout warns; and of one wavelength no colour can be made. Tables of the default size say nothing of the kind.
 #[test]
 fn tables_that_are_too_coarse_are_warned_of() {
     let coarse = Settings {
-        elek2010_size: [12, 48, 2, 6],
+        elek2010_size: [12, 2, 24, 6],
         compact_sizes: Sizes { single: [10, 20, 2, 4], multiple: [8, 20, 2, 6] },
         ..Settings::default()
     };
