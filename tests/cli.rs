@@ -4,6 +4,7 @@
 mod mounted;
 
 mod cli {
+    mod chart;
     mod damaged;
     mod disk;
     mod help;

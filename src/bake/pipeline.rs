@@ -30,6 +30,10 @@ pub struct Product {
 const RESIDUAL_WARNING: f64 = 0.01;
 /// Error of the energy balance above which the bake warns.
 const BALANCE_WARNING: f64 = 3e-3;
+/// Error of the tables of a layout on 95 % of views by day above which the bake warns: five times that of the paper's.
+const TABLES_WARNING: f64 = 0.3;
+/// Median error by day of the paper's layout against the preset's own medium above which the bake warns.
+const MEDIUM_WARNING: f64 = 0.25;
 /// What messages call a bake that is in no folder yet.
 const IN_MEMORY: &str = "the bake in memory";
 
@@ -166,7 +170,7 @@ impl<'a> Solved<'a> {
         let (paper, settings) = (&self.paper, self.settings);
         let (tables, oddities) = match settings.solver {
             Solver::Moments => elek2010::tables(paper, light, palette, settings.elek2010_size),
-            Solver::Literal { samples } => super::literal::tables(paper, light, palette, settings, samples)?,
+            Solver::Literal { .. } => super::literal::tables(paper, light, palette, settings)?,
         };
         filled.tables.extend(tables);
         let groups = compact::groups(&self.full);
@@ -229,6 +233,7 @@ impl<'a> Solved<'a> {
     fn warnings(&self, quality: &Map<String, Value>) -> Vec<String> {
         let mut out = self.planet.warnings.clone();
         out.extend(outside_vision(&self.settings.wavelengths_nm));
+        out.extend(few_wavelengths(&self.settings.wavelengths_nm));
         let waters = &self.settings.waters.list;
         out.extend(waters.iter().flat_map(|w| w.warnings.iter().map(|t| format!("{}: {t}", w.name))));
         for (name, light) in [("full", &self.full_light), ("paper's", &self.paper_light)] {
@@ -240,8 +245,40 @@ impl<'a> Solved<'a> {
                 out.push(format!("energy balance of the {key}: {:+.2} % of the light", 100.0 * error));
             }
         }
+        out.extend(coarse_tables(quality));
         out
     }
+}
+
+/// Warnings where the tables of a layout are so coarse that they miss the light of their own medium by day.
+fn coarse_tables(quality: &Map<String, Value>) -> Vec<String> {
+    let own = [
+        ("compact", &["compact_against_direct_integration", "day", "rgb"][..]),
+        ("elek2010", &["elek2010_against_its_own_medium", "day"][..]),
+    ];
+    let error = |path: &[&str]| {
+        let found = path[1..].iter().try_fold(quality.get(path[0])?, |at, key| at.get(key))?;
+        found["p95"].as_f64().filter(|e| *e > TABLES_WARNING)
+    };
+    let warning = |(layout, path): (&str, &[&str])| {
+        error(path).map(|e| {
+            let percent = if e < 100.0 { format!("{:.0} %", 100.0 * e) } else { "any measure".into() };
+            format!(
+                "layout {layout}: one in twenty views by day is off by more than {percent}; --size takes larger tables"
+            )
+        })
+    };
+    let mut out: Vec<String> = own.into_iter().filter_map(warning).collect();
+    let simplified =
+        quality.get("elek2010_against_the_full_medium").and_then(|q| q["day"]["median"].as_f64());
+    if let Some(error) = simplified.filter(|e| *e > MEDIUM_WARNING) {
+        out.push(format!(
+            "layout elek2010: its isotropic haze is not this planet's: half of the views by day are off by more than \
+             {:.0} %; layout compact holds the medium as it is",
+            100.0 * error
+        ));
+    }
+    out
 }
 
 /// The bake as its readers will see it.
@@ -290,6 +327,14 @@ fn outside_vision(nm: &[f64]) -> Option<String> {
              of the preset are held at their ends where they are not given",
             nm.len()
         )
+    })
+}
+
+/// A warning where there are fewer wavelengths than colours have dimensions.
+fn few_wavelengths(nm: &[f64]) -> Option<String> {
+    (nm.len() < 3).then(|| {
+        let (n, s) = (nm.len(), if nm.len() == 1 { "" } else { "s" });
+        format!("{n} wavelength{s}: colours need three, those of this bake are of one kind of sky; radiance is exact")
     })
 }
 

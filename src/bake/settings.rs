@@ -2,6 +2,7 @@
 
 use super::compact::Sizes;
 use super::water::Waters;
+use crate::methods::literal::Gather;
 use crate::spectrum::ColourSpace;
 use crate::table::Elek2010;
 use crate::transport::slab::WaterOrders;
@@ -33,7 +34,7 @@ pub enum Solver {
     /// Angular moments of the radiance.
     Moments,
     /// Algorithm 1 as it is written, with this many samples an integral.
-    Literal { samples: usize },
+    Literal { samples: usize, gather: Gather },
 }
 
 /// Settings of a bake.
@@ -83,7 +84,12 @@ impl Settings {
         };
         let solver = match self.solver {
             Solver::Moments => json!("moments"),
-            Solver::Literal { samples } => json!({ "literal": { "samples": samples } }),
+            Solver::Literal { samples, gather: Gather::PerPoint } => {
+                json!({ "literal": { "samples": samples } })
+            }
+            Solver::Literal { samples, gather } => {
+                json!({ "literal": { "samples": samples, "gather": format!("{gather:?}") } })
+            }
         };
         json!({
             "layouts": self.layouts.iter().map(|l| l.name()).collect::<Vec<_>>(),

@@ -1,6 +1,7 @@
 //! One file a command: arguments in, results on standard output, talk on standard error.
 
 pub mod bake;
+pub mod chart;
 pub mod colour;
 pub mod colour_input;
 mod machine;

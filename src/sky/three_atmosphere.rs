@@ -20,6 +20,8 @@ pub struct ThreeAtmosphere {
     illuminance: f64,
     /// Of the star, RGB.
     star: Vec<f64>,
+    /// Aerosols' scattering over that of gas as RGB, where light scattered once by aerosols is guessed from its red.
+    guess: Option<[f64; 3]>,
 }
 
 /// A table over two axes.
@@ -77,7 +79,15 @@ impl ThreeAtmosphere {
             ground_albedo: colour("three_atmosphere_ground_albedo_rgb")?,
             star: colour("three_atmosphere_star_rgb_lx")?,
             illuminance: source.number("star_illuminance_lx")?,
+            guess: None,
         })
+    }
+
+    /// From now on, of light scattered once by aerosols only the red in channel A of `scattering` is read, as by the
+    /// package without `single_mie_scattering`: green and blue follow the rest of the light, times the quotients of
+    /// `mie_over_rayleigh` (Bruneton 2017, GetExtrapolatedSingleMieScattering).
+    pub fn guess_mie(&mut self, mie_over_rayleigh: [f64; 3]) {
+        self.guess = Some(mie_over_rayleigh);
     }
 
     /// Linear RGB over the star's illuminance, 1/sr.
@@ -100,7 +110,20 @@ impl ThreeAtmosphere {
         let place = [sun, nu, view, altitude];
         let strides = [1, suns, suns * angles, suns * angles * views];
         let at = |texels: &Texels| texels.decode(texels.interpolate(&place, &strides));
-        let (all, mie) = (at(&self.scattering), at(&self.single_mie));
+        let all = at(&self.scattering);
+        let mie = match self.guess {
+            None => at(&self.single_mie),
+            Some(_) if all[0] <= 0.0 => [0.0; 4],
+            Some(ratio) => {
+                let red = all[3] / all[0];
+                [
+                    all[0] * red,
+                    all[1] * red * (ratio[1] / ratio[0]),
+                    all[2] * red * (ratio[2] / ratio[0]),
+                    0.0,
+                ]
+            }
+        };
         let gas = PhaseFunction::Rayleigh { king_factor: 1.0 }.value(p.nu);
         let aerosol = PhaseFunction::CornetteShanks { g: self.g }.value(p.nu);
         std::array::from_fn(|c| all[c] * gas + mie[c] * aerosol)

@@ -5,11 +5,12 @@ use clap::Args;
 use std::fs;
 use tyndall::commands;
 
-const COMMANDS: [&str; 10] = [
+const COMMANDS: [&str; 11] = [
     "bake",
     "sample",
     "reference",
     "verify",
+    "chart",
     "colour",
     "presets",
     "presets list",
@@ -37,6 +38,7 @@ fn parse(example: &str) -> Result<(), clap::Error> {
         "sample" => commands::sample::Args::augment_args(named),
         "reference" => commands::reference::Args::augment_args(named),
         "verify" => commands::verify::Args::augment_args(named),
+        "chart" => commands::chart::Args::augment_args(named),
         "colour" => commands::colour::Args::augment_args(named),
         "presets" => commands::presets::Args::augment_args(named),
         other => panic!("{example}: {other} is not tested"),
@@ -85,7 +87,7 @@ fn examples_run() {
     }
     for example in COMMANDS.iter().flat_map(|command| examples(command)) {
         let words: Vec<&str> = example.split_whitespace().skip(1).collect();
-        if ["bake", "reference"].contains(&words[0]) {
+        if ["bake", "reference", "chart"].contains(&words[0]) {
             continue;
         }
         let done = ran(command().args(&words).current_dir(here).output().unwrap());

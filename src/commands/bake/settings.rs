@@ -6,6 +6,7 @@ use crate::bake::compact::Sizes;
 use crate::bake::settings::{Layout, Settings, Solver};
 use crate::bake::water::Waters;
 use crate::error::{Error, Result};
+use crate::methods::literal::Gather;
 use crate::preset;
 use crate::table::Elek2010;
 use crate::transport::slab::WaterOrders;
@@ -25,7 +26,11 @@ pub fn settings(args: &Args) -> Result<Settings> {
         orders: args.orders,
         wavelengths_nm,
         space: args.colour_space,
-        solver: if literal { Solver::Literal { samples: 30 } } else { Solver::Moments },
+        solver: if literal {
+            Solver::Literal { samples: 30, gather: Gather::PerPoint }
+        } else {
+            Solver::Moments
+        },
         spectral: args.spectral,
         waters,
         ..Settings::default()
