@@ -4,7 +4,9 @@
 mod mounted;
 
 mod cli {
+    mod committed;
     mod damaged;
+    mod differ;
     mod disk;
     mod help;
     mod many;
@@ -13,6 +15,7 @@ mod cli {
     mod places;
     mod points;
     mod refused;
+    mod reused;
     mod round_trip;
     mod run;
     mod same_bytes;

@@ -31,7 +31,7 @@ pub fn manifest(
     let white = palette.space.white();
     Manifest {
         schema_version: SCHEMA_VERSION,
-        tool: Tool { name: "tyndall".into(), version: env!("CARGO_PKG_VERSION").into() },
+        tool: Tool::this(),
         preset: Preset { name: planet.name.clone(), hash: planet.hash(), resolved: planet.resolved() },
         settings: settings.json(),
         wavelengths: Wavelengths { kind: GridKind::Points, nm: settings.wavelengths_nm.clone() },
@@ -47,6 +47,7 @@ pub fn manifest(
         files: Vec::new(),
         quality: Value::Null,
         warnings: Vec::new(),
+        manifest_blake3: String::new(),
     }
 }
 

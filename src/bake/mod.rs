@@ -5,6 +5,7 @@ mod describe;
 pub mod elek2010;
 mod extinction;
 mod files;
+pub mod inputs;
 mod literal;
 pub mod memory;
 pub mod palette;

@@ -65,6 +65,7 @@ pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -
     manifest.files = files.others();
     manifest.quality = Value::Object(quality);
     manifest.warnings = warnings;
+    manifest.seal()?;
     let text = manifest.to_json()?;
     let mut out = files.into_bytes();
     out.push(("bake.json".into(), text.into_bytes()));

@@ -1,5 +1,7 @@
 //! `tyndall bake`: presets in, folders of tables out.
 
+mod depfile;
+mod fresh;
 mod jobs;
 mod progress;
 mod settings;
@@ -23,8 +25,14 @@ use summary::{Done, Outcome};
 
 /// Bake the lookup tables of planets into folders of EXR files with a bake.json
 #[derive(clap::Args, Debug)]
-#[command(before_help = "Example: tyndall bake earth --layout compact --out out
-         tyndall bake --all --memory 2GiB")]
+#[command(
+    before_help = "Example: tyndall bake earth --layout compact --out out
+         tyndall bake earth mars --check
+         tyndall bake --all --memory 2GiB",
+    after_help = "A bake that is there already, from the same preset, settings and program and with every file whole, is \
+                  not baked again.
+Exit code 0: done; 1: --check found a stale bake; 2: bad arguments or presets; 3: the machine failed, or a stop."
+)]
 pub struct Args {
     /// Presets by name (see `tyndall presets`) or paths of JSON files
     #[arg(required_unless_present = "all", value_name = "PRESET")]
@@ -69,6 +77,15 @@ pub struct Args {
     /// Write spectral EXR files too (large)
     #[arg(long)]
     spectral: bool,
+    /// Bake even what is there already from the same preset, settings and program
+    #[arg(long, conflicts_with = "check")]
+    force: bool,
+    /// Solve and write nothing: say what of the bakes in --out is stale, a line each, with exit code 1 if anything is
+    #[arg(long, conflicts_with_all = ["perf", "depfile"])]
+    check: bool,
+    /// Write which files the bakes depend on, as make and ninja read it
+    #[arg(long, value_name = "FILE")]
+    depfile: Option<PathBuf>,
     /// Set a value of the preset, e.g. constituents.aerosol.density_factor=10; repeatable
     #[arg(long, value_name = "PATH.TO.KEY=VALUE")]
     set: Vec<String>,
@@ -78,7 +95,7 @@ pub struct Args {
     /// Instruction set of the hot loops; the bytes do not depend on it
     #[arg(long, value_enum, default_value = "auto")]
     isa: IsaChoice,
-    /// Print the time of each stage; presets then run one after another
+    /// Print the time of each stage; presets then run one after another, also those that are there already
     #[arg(long)]
     perf: bool,
     /// Print the outcome as JSON, a line for each preset
@@ -104,13 +121,23 @@ pub fn run(args: &Args) -> Result<()> {
     let planets: Vec<Result<Planet>> = asked.iter().map(|p| preset::load(p, &args.set)).collect();
     refuse_shared_folders(&asked, &planets)?;
     share_threads(args.threads)?;
+    if args.check {
+        return fresh::check(args, &settings, &asked, planets);
+    }
+    let names = depfile::names(&planets);
     let progress = Progress::new(args.quiet);
     if asked.len() > 1 {
         planets.iter().filter_map(|p| p.as_ref().err()).for_each(|e| progress.always(&format!("error: {e}")));
     }
     let outcomes = bake_all(args, &settings, &progress, &asked, planets);
     summary::tell(&outcomes, args.json, args.perf)?;
-    summary::failure(outcomes)
+    summary::failure(outcomes)?;
+    depfile::write(args, &asked, &names)
+}
+
+/// The settings of one preset's bake.
+fn of_preset(args: &Args, settings: &Settings, asked: &str) -> Settings {
+    Settings { shipped_preset: args.set.is_empty() && preset::is_shipped(asked), ..settings.clone() }
 }
 
 fn asked(args: &Args) -> Vec<String> {
@@ -144,8 +171,7 @@ fn bake_all(
     let at_once = if args.perf { 1 } else { rayon::current_num_threads() };
     let answers = run_all(&needs, Bounds { memory, at_once }, |k| {
         let planet = planets[k].as_ref().ok()?;
-        let shipped_preset = args.set.is_empty() && preset::is_shipped(&asked[k]);
-        let settings = Settings { shipped_preset, ..settings.clone() };
+        let settings = of_preset(args, settings, &asked[k]);
         if needs[k] > memory && planets.len() > 1 {
             let (need, bound) = (memory::shown(needs[k]), memory::shown(memory));
             progress
@@ -181,6 +207,14 @@ fn default_memory() -> u64 {
 /// One bake, from planet to folder.
 fn one(args: &Args, settings: &Settings, progress: &Progress, planet: &Planet, need: u64) -> Result<Done> {
     let folder = args.out.join(&planet.name);
+    if !args.force
+        && !args.perf
+        && let Some(done) = fresh::current(&folder, planet, settings)
+    {
+        Staging::sweep_beside(&folder);
+        progress.end(&planet.name, "is there already; --force bakes it again");
+        return Ok(done);
+    }
     let staging = Staging::begin(&folder)?;
     let about = format!(", in some {}", memory::shown(need));
     let mut clock = progress.begin(&planet.name, stages(settings), &about);
@@ -199,5 +233,6 @@ fn one(args: &Args, settings: &Settings, progress: &Progress, planet: &Planet, n
         warnings: product.manifest.warnings,
         quality: product.manifest.quality.as_object().cloned().unwrap_or_default(),
         stages: clock.finish(),
+        reused: false,
     })
 }

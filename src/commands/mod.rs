@@ -3,6 +3,7 @@
 pub mod bake;
 pub mod colour;
 mod colour_input;
+pub mod diff;
 mod machine;
 mod memory;
 pub mod presets;

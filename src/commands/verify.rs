@@ -85,12 +85,26 @@ pub fn differences(bake: &Path, shipped: impl Fn(&str) -> Option<String>) -> Res
     Ok(found)
 }
 
+/// Files of the bake that are missing or whose bytes are not those of the manifest; what is in them is not looked at.
+pub fn lost_or_changed(folder: &Path, manifest: &Manifest) -> Vec<Difference> {
+    let tables = manifest.tables.iter().map(|t| (&t.file, &t.blake3));
+    let others = manifest.files.iter().map(|f| (&f.file, &f.blake3));
+    let check = |(file, hash): (&String, &String)| {
+        let whats = check_file(folder, file, hash, |_| Vec::new());
+        whats.into_iter().map(|what| difference(file, what)).collect::<Vec<_>>()
+    };
+    tables.chain(others).flat_map(check).collect()
+}
+
 fn difference(place: &str, what: impl Into<String>) -> Difference {
     Difference { place: place.to_string(), what: what.into() }
 }
 
 fn about_the_manifest(manifest: &Manifest, shipped: impl Fn(&str) -> Option<String>) -> Vec<Difference> {
     let mut found = Vec::new();
+    if !manifest.seal_holds() {
+        found.push(difference(MANIFEST, "a value in it was changed since it was baked (another BLAKE3)"));
+    }
     let preset = &manifest.preset;
     if hash_of(&preset.resolved) != preset.hash {
         found.push(difference("preset.hash", "is not that of the resolved preset beside it"));

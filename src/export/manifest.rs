@@ -33,6 +33,9 @@ pub struct Manifest {
     /// The quality report: orders and residual, errors by region, energy balance, counts of odd values.
     pub quality: Value,
     pub warnings: Vec<String>,
+    /// [`Manifest::own_hash`]; empty where nothing sealed it.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub manifest_blake3: String,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -40,6 +43,9 @@ pub struct Manifest {
 pub struct Tool {
     pub name: String,
     pub version: String,
+    /// Fingerprint of the sources that decide what a bake holds (see `build.rs`), 32 hexadecimal digits.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub source: String,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -5,8 +5,9 @@ use clap::Args;
 use std::fs;
 use tyndall::commands;
 
-const COMMANDS: [&str; 10] = [
+const COMMANDS: [&str; 11] = [
     "bake",
+    "diff",
     "sample",
     "reference",
     "verify",
@@ -36,6 +37,7 @@ fn parse(example: &str) -> Result<(), clap::Error> {
         "bake" => commands::bake::Args::augment_args(named),
         "sample" => commands::sample::Args::augment_args(named),
         "reference" => commands::reference::Args::augment_args(named),
+        "diff" => commands::diff::Args::augment_args(named),
         "verify" => commands::verify::Args::augment_args(named),
         "colour" => commands::colour::Args::augment_args(named),
         "presets" => commands::presets::Args::augment_args(named),

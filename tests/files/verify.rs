@@ -54,7 +54,7 @@ fn manifest(staging: &Staging) -> Manifest {
     let resolved = json!({"radius_m": 11266.7, "constituents": [{"g": 0.1 + 0.2, "z": 1e-300}], "a": 1.0});
     Manifest {
         schema_version: SCHEMA_VERSION,
-        tool: Tool { name: "tyndall".into(), version: env!("CARGO_PKG_VERSION").into() },
+        tool: Tool::this(),
         preset: Preset { name: "phobos".into(), hash: hash_of(&resolved), resolved },
         settings: json!({"orders": "auto", "shipped_preset": true}),
         wavelengths: Wavelengths { kind: GridKind::Points, nm: vec![440.0, 1.0 / 3.0, f64::MIN_POSITIVE] },
@@ -74,6 +74,7 @@ fn manifest(staging: &Staging) -> Manifest {
         }],
         quality: json!({"orders": 12}),
         warnings: vec!["a spectrum ends at 700 nm".into()],
+        manifest_blake3: String::new(),
     }
 }
 
