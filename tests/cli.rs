@@ -5,6 +5,7 @@ mod mounted;
 
 mod cli {
     mod committed;
+    mod containers;
     mod damaged;
     mod differ;
     mod disk;

@@ -40,7 +40,7 @@ pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -
     let filled = solved.fill(&palette, stage)?;
 
     stage("encode");
-    let mut files = Files::encode(&filled.tables)?;
+    let mut files = Files::encode(&filled.tables, &settings.storage)?;
     if let (true, Some(light)) = (settings.spectral, &solved.paper_light) {
         files.extra.extend(spectral::files(&solved.paper, light, planet, settings)?);
     }

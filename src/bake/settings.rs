@@ -2,6 +2,7 @@
 
 use super::compact::Sizes;
 use super::water::Waters;
+use crate::export::container::Container;
 use crate::spectrum::ColourSpace;
 use crate::table::Elek2010;
 use crate::transport::slab::WaterOrders;
@@ -33,6 +34,21 @@ pub enum Solver {
     Literal { samples: usize },
 }
 
+/// In which files tables are stored.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Storage {
+    /// Besides EXR.
+    pub containers: Vec<Container>,
+    /// Slices of EXR files lie in one column and not in a grid.
+    pub column: bool,
+}
+
+impl Storage {
+    fn formats(&self) -> Vec<&str> {
+        [Container::Exr].iter().chain(&self.containers).map(|c| c.name()).collect()
+    }
+}
+
 /// Settings of a bake.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -44,6 +60,7 @@ pub struct Settings {
     pub space: ColourSpace,
     pub solver: Solver,
     pub spectral: bool,
+    pub storage: Storage,
     pub waters: Waters,
     /// The planet is a shipped preset as it is, so that `verify` may tell when a later tool ships another.
     pub shipped_preset: bool,
@@ -65,6 +82,7 @@ impl Default for Settings {
             space: ColourSpace::Srgb,
             solver: Solver::Moments,
             spectral: false,
+            storage: Storage::default(),
             waters: Waters::default(),
             shipped_preset: false,
         }
@@ -90,6 +108,8 @@ impl Settings {
             "orders": orders,
             "solver": solver,
             "spectral": self.spectral,
+            "formats": self.storage.formats(),
+            "exr_atlas": if self.storage.column { "column" } else { "grid" },
             "waters": self.waters.list.iter().map(|w| w.name.as_str()).collect::<Vec<_>>(),
             "water_size": self.waters.size,
             "water_orders": match self.waters.orders {

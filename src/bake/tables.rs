@@ -71,10 +71,20 @@ impl Baked {
                 columns: atlas.columns,
                 rows: atlas.rows(),
                 slice_order: "row-major".into(),
+                slice_index: self.slice_index(),
                 origin: Origin::TopLeft,
             },
             encoding: self.encoding.clone(),
             channels,
+            containers: Vec::new(),
+        }
+    }
+
+    fn slice_index(&self) -> String {
+        match self.axes.get(2..).unwrap_or_default() {
+            [] => "0".into(),
+            [z] => z.name.clone(),
+            [z, w, ..] => format!("{} * {} + {}", w.name, z.size, z.name),
         }
     }
 }

@@ -13,6 +13,7 @@ use crate::bake::bake;
 use crate::bake::memory::estimate;
 use crate::bake::settings::{Layout, Settings, TOLERANCE};
 use crate::error::{Error, Result};
+use crate::export::container::Container;
 use crate::export::staging::Staging;
 use crate::preset::{self, Planet};
 use crate::spectrum::ColourSpace;
@@ -74,6 +75,12 @@ pub struct Args {
     /// Primaries of RGB tables, always linear
     #[arg(long, default_value = "srgb", value_parser = space)]
     colour_space: ColourSpace,
+    /// Containers of tables, comma-separated; EXR is always written, since this tool reads it
+    #[arg(long, value_delimiter = ',', value_enum, default_values_t = [Container::Exr])]
+    formats: Vec<Container>,
+    /// How slices lie in the pictures of EXR files: in a grid, or one below the other
+    #[arg(long, default_value = "grid", value_parser = ["grid", "column"])]
+    exr_atlas: String,
     /// Write spectral EXR files too (large)
     #[arg(long)]
     spectral: bool,

@@ -104,6 +104,29 @@ pub struct Table {
     pub packing: Packing,
     pub encoding: Encoding,
     pub channels: Vec<ChannelInfo>,
+    /// The same table, bit for bit, in other containers.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub containers: Vec<InContainer>,
+}
+
+/// A table in a container besides EXR.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct InContainer {
+    /// `ktx2`, `dds` or `npy`.
+    pub format: String,
+    pub file: String,
+    pub blake3: String,
+    /// Sizes as a reader of the file finds them.
+    pub shape: Vec<usize>,
+    pub about: String,
+}
+
+impl Table {
+    /// Path and hash of every file of the table, EXR first.
+    pub fn files(&self) -> impl Iterator<Item = (&String, &String)> {
+        [(&self.file, &self.blake3)].into_iter().chain(self.containers.iter().map(|c| (&c.file, &c.blake3)))
+    }
 }
 
 /// How texels follow a physical coordinate.
@@ -130,6 +153,9 @@ pub struct Packing {
     pub rows: usize,
     /// `row-major`: slice s lies in column s mod columns, row s / columns.
     pub slice_order: String,
+    /// The number of a slice from the texels of the axes that slices share, e.g. `azimuth * 32 + sun`.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub slice_index: String,
     pub origin: Origin,
 }
 

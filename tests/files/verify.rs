@@ -36,6 +36,7 @@ fn table(staging: &Staging) -> Table {
             columns: 2,
             rows: 2,
             slice_order: "row-major".into(),
+            slice_index: "azimuth * 2 + mu_s".into(),
             origin: Origin::TopLeft,
         },
         encoding: Encoding::log(1.0 / 16384.0, 4.5, -17.0),
@@ -47,6 +48,7 @@ fn table(staging: &Staging) -> Table {
             range: atlas.channels[0].samples.range(),
             encoding: None,
         }],
+        containers: Vec::new(),
     }
 }
 

@@ -47,7 +47,7 @@ pub fn current(folder: &Path, planet: &Planet, settings: &Settings) -> Option<Do
         return None;
     }
     let manifest = Manifest::read(folder).ok()?;
-    let tables = manifest.tables.iter().map(|t| t.file.as_str());
+    let tables = manifest.tables.iter().flat_map(|t| t.files().map(|f| f.0.as_str()));
     let files: Vec<&str> =
         tables.chain(manifest.files.iter().map(|f| f.file.as_str())).chain([MANIFEST]).collect();
     let size = |file: &&str| std::fs::metadata(folder.join(file)).map(|m| m.len() as usize).ok();
