@@ -2,7 +2,7 @@
 
 use clap::Parser;
 use std::io::Write;
-use tyndall::commands::{bake, colour, diff, presets, reference, sample, verify};
+use tyndall::commands::{bake, colour, diff, presets, recolour, reference, sample, verify};
 
 /// Offline baker of lookup tables for planetary atmospheres
 #[derive(Parser)]
@@ -14,6 +14,7 @@ enum Command {
     Reference(reference::Args),
     Verify(verify::Args),
     Diff(diff::Args),
+    Recolour(recolour::Args),
     Colour(colour::Args),
     Presets(presets::Args),
 }
@@ -38,6 +39,7 @@ fn run(command: Command) -> tyndall::Result<()> {
         Command::Reference(args) => reference::run(&args),
         Command::Verify(args) => verify::run(&args),
         Command::Diff(args) => diff::run(&args),
+        Command::Recolour(args) => recolour::run(&args),
         Command::Colour(args) => colour::run(&args),
         Command::Presets(args) => presets::run(&args),
     }

@@ -9,12 +9,14 @@ mod cli {
     mod damaged;
     mod differ;
     mod disk;
+    mod farm;
     mod help;
     mod many;
     mod media;
     mod options;
     mod places;
     mod points;
+    mod recolour;
     mod refused;
     mod reused;
     mod round_trip;

@@ -16,7 +16,7 @@ pub fn asked(planet: &Planet, settings: &Settings) -> Value {
         waters.collect(),
         settings.json(),
         &settings.wavelengths_nm,
-        json!({ "space": settings.space.name(), "white": crate::spectrum::chromaticity(settings.space.white()) }),
+        json!({ "space": settings.rgb.space.name(), "white": crate::spectrum::chromaticity(settings.rgb.space.white()) }),
     )
 }
 

@@ -11,6 +11,7 @@ pub mod memory;
 pub mod palette;
 mod pictures;
 mod pipeline;
+pub mod recolour;
 pub mod report;
 pub mod settings;
 pub mod skies;

@@ -3,7 +3,7 @@
 use super::compact::Sizes;
 use super::water::Waters;
 use crate::export::container::Container;
-use crate::spectrum::ColourSpace;
+use crate::spectrum::{ColourSpace, Rgb, White};
 use crate::table::Elek2010;
 use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
@@ -57,7 +57,7 @@ pub struct Settings {
     pub compact_sizes: Sizes,
     pub orders: Orders,
     pub wavelengths_nm: Vec<f64>,
-    pub space: ColourSpace,
+    pub rgb: Rgb,
     pub solver: Solver,
     pub spectral: bool,
     pub storage: Storage,
@@ -79,7 +79,7 @@ impl Default for Settings {
             compact_sizes: Sizes::default(),
             orders: Orders::Converged { tolerance: TOLERANCE },
             wavelengths_nm: crate::spectrum::grid(WAVELENGTHS),
-            space: ColourSpace::Srgb,
+            rgb: Rgb { space: ColourSpace::Srgb, white: None },
             solver: Solver::Moments,
             spectral: false,
             storage: Storage::default(),
@@ -107,6 +107,7 @@ impl Settings {
             "compact_multiple_size": self.compact_sizes.multiple,
             "orders": orders,
             "solver": solver,
+            "white": white(&self.rgb),
             "spectral": self.spectral,
             "formats": self.storage.formats(),
             "exr_atlas": if self.storage.column { "column" } else { "grid" },
@@ -120,4 +121,14 @@ impl Settings {
             "shipped_preset": self.shipped_preset,
         })
     }
+}
+
+/// For the manifest: what is adapted to the white of the colour space, and how; null if nothing is.
+pub fn white(rgb: &Rgb) -> Value {
+    let Some((white, by)) = rgb.white else { return Value::Null };
+    let from = match white {
+        White::Star => json!("star"),
+        White::Xy(xy) => json!(xy),
+    };
+    json!({ "from": from, "by": by })
 }

@@ -10,6 +10,7 @@ pub mod presets;
 mod presets_colour;
 mod presets_show;
 mod presets_water;
+pub mod recolour;
 pub mod reference;
 mod reference_water;
 pub mod sample;

@@ -1,6 +1,7 @@
 //! `bake.json`: everything that a reader of a bake's files has to know, and nothing of the machine or the moment.
 
 use crate::error::{Error, Result};
+use crate::spectrum::Adaptation;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -85,8 +86,20 @@ pub struct Colour {
     pub observer: String,
     /// Chromaticity x, y of the white.
     pub white: [f64; 2],
+    /// The white that was adapted to the space's own; part of every matrix to RGB.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub adaptation: Option<Adapted>,
     /// By what they take and give, e.g. `xyz_to_rgb`; a row for each output.
     pub matrices: BTreeMap<String, Vec<Vec<f64>>>,
+}
+
+/// A chromatic adaptation to the white of a space.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Adapted {
+    /// Chromaticity x, y of what becomes white.
+    pub from: [f64; 2],
+    pub by: Adaptation,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

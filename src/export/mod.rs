@@ -3,6 +3,7 @@
 
 pub mod atlas;
 pub mod changes;
+pub mod claim;
 pub mod container;
 pub mod exr;
 mod font;

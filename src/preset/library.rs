@@ -183,7 +183,7 @@ mod tests {
         let mut waters: Vec<&str> = shipped_water_names().collect();
         waters.sort_unstable();
         assert_eq!(names("waters"), waters);
-        let mut spectra: Vec<&str> = spectrum_names().chain(["cie1931-2deg"]).collect();
+        let mut spectra: Vec<&str> = spectrum_names().chain(["cie1931-2deg", "cie1964-10deg"]).collect();
         spectra.sort_unstable();
         assert_eq!(names("spectra"), spectra);
     }

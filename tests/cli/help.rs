@@ -5,9 +5,10 @@ use clap::Args;
 use std::fs;
 use tyndall::commands;
 
-const COMMANDS: [&str; 11] = [
+const COMMANDS: [&str; 12] = [
     "bake",
     "diff",
+    "recolour",
     "sample",
     "reference",
     "verify",
@@ -38,6 +39,7 @@ fn parse(example: &str) -> Result<(), clap::Error> {
         "sample" => commands::sample::Args::augment_args(named),
         "reference" => commands::reference::Args::augment_args(named),
         "diff" => commands::diff::Args::augment_args(named),
+        "recolour" => commands::recolour::Args::augment_args(named),
         "verify" => commands::verify::Args::augment_args(named),
         "colour" => commands::colour::Args::augment_args(named),
         "presets" => commands::presets::Args::augment_args(named),

@@ -64,6 +64,7 @@ fn manifest(staging: &Staging) -> Manifest {
             space: "srgb".into(),
             observer: "CIE 1931 2 degrees".into(),
             white: [0.3127, 0.329],
+            adaptation: None,
             matrices: BTreeMap::from([("xyz_to_rgb".into(), vec![vec![3.2404542, -1.5371385, -0.4985314]])]),
         },
         constants: BTreeMap::from([("ground_radius_m".into(), vec![11_266.7])]),

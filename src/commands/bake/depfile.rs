@@ -16,6 +16,7 @@ pub fn write(args: &Args, asked: &[String], planets: &[Option<String>]) -> Resul
     for water in args.waters.iter().filter(|w| *w != "none") {
         common.extend(preset::water_files(water)?);
     }
+    common.extend(args.list.clone());
     common.extend(std::env::current_exe().ok());
     let mut text = String::new();
     for (asked, name) in asked.iter().zip(planets) {

@@ -8,6 +8,7 @@ use crate::bake::water::Waters;
 use crate::error::{Error, Result};
 use crate::export::container::Container;
 use crate::preset;
+use crate::spectrum::Rgb;
 use crate::table::Elek2010;
 use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
@@ -25,7 +26,7 @@ pub fn settings(args: &Args) -> Result<Settings> {
         layouts,
         orders: args.orders,
         wavelengths_nm,
-        space: args.colour_space,
+        rgb: Rgb { space: args.colour_space, white: args.white.map(|white| (white, args.adaptation)) },
         solver: if literal { Solver::Literal { samples: 30 } } else { Solver::Moments },
         spectral: args.spectral,
         storage: storage(args),
