@@ -2,7 +2,7 @@
 
 use clap::Parser;
 use std::io::Write;
-use tyndall::commands::{bake, chart, colour, presets, reference, sample, verify};
+use tyndall::commands::{bake, chart, colour, diff, presets, recolour, reference, sample, verify};
 
 /// Offline baker of lookup tables for planetary atmospheres
 #[derive(Parser)]
@@ -13,6 +13,8 @@ enum Command {
     Sample(sample::Args),
     Reference(reference::Args),
     Verify(verify::Args),
+    Diff(diff::Args),
+    Recolour(recolour::Args),
     Chart(chart::Args),
     Colour(colour::Args),
     Presets(presets::Args),
@@ -37,6 +39,8 @@ fn run(command: Command) -> tyndall::Result<()> {
         Command::Sample(args) => sample::run(&args),
         Command::Reference(args) => reference::run(&args),
         Command::Verify(args) => verify::run(&args),
+        Command::Diff(args) => diff::run(&args),
+        Command::Recolour(args) => recolour::run(&args),
         Command::Chart(args) => chart::run(&args),
         Command::Colour(args) => colour::run(&args),
         Command::Presets(args) => presets::run(&args),

@@ -5,15 +5,21 @@ mod mounted;
 
 mod cli {
     mod chart;
+    mod committed;
+    mod containers;
     mod damaged;
+    mod differ;
     mod disk;
+    mod farm;
     mod help;
     mod many;
     mod media;
     mod options;
     mod places;
     mod points;
+    mod recolour;
     mod refused;
+    mod reused;
     mod round_trip;
     mod run;
     mod same_bytes;

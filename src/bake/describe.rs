@@ -5,9 +5,12 @@ use super::files::Files;
 use super::palette::Palette;
 use super::settings::Settings;
 use super::water::WaterTables;
-use crate::export::manifest::{Colour, GridKind, Manifest, Preset, SCHEMA_VERSION, Tool, Wavelengths};
+use crate::export::manifest::{
+    Adapted, Colour, GridKind, Manifest, Preset, SCHEMA_VERSION, Tool, Wavelengths,
+};
 use crate::medium::{Medium, Role};
 use crate::preset::{Planet, Water};
+use crate::spectrum::{Adaptation, chromaticity};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -19,6 +22,25 @@ pub fn manifest(
     medium: &Medium,
     files: &Files,
 ) -> Manifest {
+    Manifest {
+        schema_version: SCHEMA_VERSION,
+        tool: Tool::this(),
+        preset: Preset { name: planet.name.clone(), hash: planet.hash(), resolved: planet.resolved() },
+        settings: settings.json(),
+        wavelengths: Wavelengths { kind: GridKind::Points, nm: settings.wavelengths_nm.clone() },
+        colour: colour(palette),
+        constants: constants(planet, palette, medium),
+        waters: Vec::new(),
+        tables: files.tables.iter().map(|t| t.entry.clone()).collect(),
+        files: Vec::new(),
+        quality: Value::Null,
+        warnings: Vec::new(),
+        manifest_blake3: String::new(),
+    }
+}
+
+/// The colour space, its white and all matrices of the air.
+pub fn colour(palette: &Palette) -> Colour {
     let rows = |weights: Vec<[f64; 3]>| {
         (0..3).map(|c| weights.iter().map(|w| w[c]).collect()).collect::<Vec<Vec<f64>>>()
     };
@@ -27,26 +49,14 @@ pub fn manifest(
     matrices.insert("rgb_from_four".into(), rows(palette.four_rgb_weights()));
     matrices.insert("xyz_from_all_wavelengths".into(), rows(palette.weights.clone()));
     matrices.insert("xyz_from_four".into(), rows(palette.four_weights.clone()));
-    matrices.insert("xyz_to_rgb".into(), palette.space.from_xyz().iter().map(|r| r.to_vec()).collect());
-    let white = palette.space.white();
-    Manifest {
-        schema_version: SCHEMA_VERSION,
-        tool: Tool { name: "tyndall".into(), version: env!("CARGO_PKG_VERSION").into() },
-        preset: Preset { name: planet.name.clone(), hash: planet.hash(), resolved: planet.resolved() },
-        settings: settings.json(),
-        wavelengths: Wavelengths { kind: GridKind::Points, nm: settings.wavelengths_nm.clone() },
-        colour: Colour {
-            space: palette.space.name().into(),
-            observer: "CIE 1931 2 degrees".into(),
-            white: crate::spectrum::chromaticity(white),
-            matrices,
-        },
-        constants: constants(planet, palette, medium),
-        waters: Vec::new(),
-        tables: files.tables.iter().map(|t| t.entry.clone()).collect(),
-        files: Vec::new(),
-        quality: Value::Null,
-        warnings: Vec::new(),
+    matrices.insert("xyz_to_rgb".into(), palette.rgb.from_xyz.iter().map(|r| r.to_vec()).collect());
+    let adapted = |(from, by): ([f64; 2], Adaptation)| Adapted { from, by };
+    Colour {
+        space: palette.rgb.space.name().into(),
+        observer: palette.beholder.name().into(),
+        white: chromaticity(palette.rgb.space.white()),
+        adaptation: palette.rgb.adapted.map(adapted),
+        matrices,
     }
 }
 
@@ -71,15 +81,20 @@ fn constants(planet: &Planet, palette: &Palette, medium: &Medium) -> BTreeMap<St
         ),
         ("ground_radius_m".to_string(), vec![medium.ground_radius]),
         ("top_radius_m".to_string(), vec![medium.top_radius]),
-        ("star_illuminance_lx".to_string(), vec![palette.star_xyz[1]]),
         ("star_angular_radius_rad".to_string(), vec![planet.star.angular_radius]),
-        (
-            "star_irradiance_at_wavelengths_w_m2_nm".to_string(),
-            planet.star.irradiance.at_all(&palette.wavelengths_nm),
-        ),
         ("elek2010_aerosol_phase_row".to_string(), vec![row as f64]),
     ]);
+    constants.extend(star(planet, palette));
     constants
+}
+
+/// Light of the star: its illuminance, and its irradiance at the wavelengths of the bake.
+pub fn star(planet: &Planet, palette: &Palette) -> [(String, Vec<f64>); 2] {
+    let irradiance = planet.star.irradiance.at_all(&palette.wavelengths_nm);
+    [
+        ("star_illuminance_lx".to_string(), vec![palette.star_xyz[1]]),
+        ("star_irradiance_at_wavelengths_w_m2_nm".to_string(), irradiance),
+    ]
 }
 
 /// What each constituent does where its density is 1, for those who march rays themselves, and its row of the phase

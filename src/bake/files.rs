@@ -1,13 +1,15 @@
 //! The files of a bake: tables encoded and hashed, and counts of what halves cannot hold well.
 
+use super::settings::Storage;
 use super::tables::Baked;
 use crate::error::Result;
-use crate::export::manifest::{Encoding, EncodingKind, OtherFile, Table};
+use crate::export::manifest::{Encoding, EncodingKind, InContainer, OtherFile, Table};
 use crate::export::{Atlas, Samples, exr};
 use half::f16;
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// BLAKE3 as in the manifest.
 fn hash(bytes: &[u8]) -> String {
@@ -25,16 +27,34 @@ pub struct TableFile {
     atlas: Atlas,
     pub entry: Table,
     bytes: Vec<u8>,
+    /// Path and content of the same in other containers.
+    others: Vec<(String, Vec<u8>)>,
 }
 
 impl Files {
     /// Encodes tables, in their order.
-    pub fn encode(baked: &[Baked]) -> Result<Files> {
+    pub fn encode(baked: &[Baked], storage: &Storage) -> Result<Files> {
         let encode = |b: &Baked| -> Result<TableFile> {
-            let atlas = b.atlas();
+            let mut atlas = b.atlas();
+            if storage.column {
+                atlas.columns = 1;
+            }
             let bytes = exr::to_exr_bytes(&atlas)?;
-            let entry = b.entry(&atlas, hash(&bytes));
-            Ok(TableFile { atlas, entry, bytes })
+            let mut entry = b.entry(&atlas, hash(&bytes));
+            let mut others = Vec::new();
+            for container in &storage.containers {
+                let bytes = container.file(&atlas, &entry.shape)?;
+                let file = Path::new(&entry.file).with_extension(container.name()).display().to_string();
+                entry.containers.push(InContainer {
+                    format: container.name().into(),
+                    file: file.clone(),
+                    blake3: hash(&bytes),
+                    shape: container.shape(&atlas, &entry.shape),
+                    about: container.about().into(),
+                });
+                others.push((file, bytes));
+            }
+            Ok(TableFile { atlas, entry, bytes, others })
         };
         Ok(Files { tables: baked.par_iter().map(encode).collect::<Result<_>>()?, extra: Vec::new() })
     }
@@ -71,7 +91,8 @@ impl Files {
 
     /// Path and content of every file, tables first.
     pub fn into_bytes(self) -> Vec<(String, Vec<u8>)> {
-        let tables = self.tables.into_iter().map(|f| (f.entry.file, f.bytes));
+        let tables =
+            self.tables.into_iter().flat_map(|f| [(f.entry.file, f.bytes)].into_iter().chain(f.others));
         tables.chain(self.extra.into_iter().map(|(file, _, bytes)| (file, bytes))).collect()
     }
 }

@@ -14,6 +14,8 @@ use crate::transport::solve::Resolution;
 const BASE: f64 = 20e6;
 /// Bytes for each texel of a table over four axes (or of a water) from when it is filled to when it is a file.
 const TEXEL: f64 = 56.0;
+/// More for each container besides EXR: the file, and once more while it is put together.
+const CONTAINER: f64 = 16.0;
 /// Bytes for each texel and wavelength of spectral files: gas and aerosol, as halves and encoded.
 const SPECTRAL: f64 = 14.0;
 /// Bytes of a number of the solver: single precision for the sixteen wavelengths of a batch.
@@ -36,9 +38,10 @@ pub fn estimate(planet: &Planet, settings: &Settings) -> u64 {
     let full_light = solve(&Resolution::TABLES, full);
     let similar = solve(&Resolution::PAPER, paper || !full);
     let texels = texels(&medium, settings);
+    let texel = TEXEL + CONTAINER * settings.storage.containers.len() as f64;
     let solving = full_light.working.max(similar.working);
-    let filling = full_light.fields.max(similar.fields) + TEXEL * texels.air + SPECTRAL * texels.spectral;
-    let counted = BASE + full_light.solution + similar.solution + solving.max(filling + TEXEL * texels.water);
+    let filling = full_light.fields.max(similar.fields) + texel * texels.air + SPECTRAL * texels.spectral;
+    let counted = BASE + full_light.solution + similar.solution + solving.max(filling + texel * texels.water);
     (MARGIN * counted) as u64
 }
 

@@ -4,8 +4,8 @@
 use super::skies::Skies;
 use crate::error::Result;
 use crate::spectrum::{
-    ColourSpace, DEFAULT_RIDGE, Reconstruction, Spectrum, delta_e_2000_scaled, fit_weights, fit_weights_by,
-    hat_weights, multiply, weighted,
+    Beholder, DEFAULT_RIDGE, Reconstruction, Rgb, RgbMatrix, Spectrum, delta_e_2000_scaled, fit_weights,
+    fit_weights_by, hat_weights_seen_by, multiply, weighted,
 };
 
 /// Share with which twilight counts in the choice of four wavelengths and their weights. Four cannot hold day
@@ -23,7 +23,9 @@ pub struct Palette {
     pub four: Vec<usize>,
     /// Weights of those four.
     pub four_weights: Vec<[f64; 3]>,
-    pub space: ColourSpace,
+    /// To linear RGB.
+    pub rgb: RgbMatrix,
+    pub beholder: Beholder,
     /// ΔE2000 of the weights against the reconstructed spectrum on skies held out of the fit.
     pub error: ColourError,
     pub four_error: ColourError,
@@ -46,24 +48,40 @@ impl Palette {
     pub fn fit(
         wavelengths_nm: &[f64],
         irradiance: &Spectrum,
-        space: ColourSpace,
-        training: &Skies,
-        held_out: &Skies,
+        rgb: &Rgb,
+        [training, held_out]: &[Skies; 2],
     ) -> Result<Self> {
-        let reconstruction = Reconstruction::new(wavelengths_nm, irradiance);
+        Palette::of(wavelengths_nm, irradiance, rgb, Beholder::default(), [training, held_out], None)
+    }
+
+    /// The same for any observer, with the four wavelengths that `four` numbers where it is given.
+    pub fn of(
+        wavelengths_nm: &[f64],
+        irradiance: &Spectrum,
+        rgb: &Rgb,
+        beholder: Beholder,
+        [training, held_out]: [&Skies; 2],
+        four: Option<Vec<usize>>,
+    ) -> Result<Self> {
+        let observer = beholder.observer();
+        let reconstruction = Reconstruction::seen_by(observer, wavelengths_nm, irradiance);
+        let star_xyz = reconstruction.sum(|_| 1.0);
+        let rgb = rgb.under(star_xyz);
         let colours =
             |skies: &Skies| skies.transfers.iter().map(|t| reconstruction.xyz(t)).collect::<Vec<_>>();
         let (targets, judges) = (colours(training), colours(held_out));
-        let prior = hat_weights(wavelengths_nm, irradiance);
+        let prior = hat_weights_seen_by(observer, wavelengths_nm, irradiance);
         let weights = fit_weights(&training.transfers, &targets, &prior, DEFAULT_RIDGE)?;
-        let factors = factors(space, &targets, &training.mu_s);
-        let four = Sums::new(space, &training.transfers, &targets, &factors).best(wavelengths_nm.len());
+        let factors = factors(&rgb, &targets, &training.mu_s);
+        let four = four.unwrap_or_else(|| {
+            Sums::new(&rgb, &training.transfers, &targets, &factors).best(wavelengths_nm.len())
+        });
         let few: Vec<f64> = four.iter().map(|&w| wavelengths_nm[w]).collect();
         let four_weights = fit_weights_by(
             &training.at(&four),
             &targets,
             &factors.iter().map(|&f| [f; 3]).collect::<Vec<_>>(),
-            &hat_weights(&few, irradiance),
+            &hat_weights_seen_by(observer, &few, irradiance),
             DEFAULT_RIDGE,
         )?;
         Ok(Palette {
@@ -73,8 +91,9 @@ impl Palette {
             weights,
             four,
             four_weights,
-            space,
-            star_xyz: reconstruction.sum(|_| 1.0),
+            rgb,
+            beholder,
+            star_xyz,
         })
     }
 
@@ -91,12 +110,12 @@ impl Palette {
 
     /// Linear RGB per radiance over solar irradiance, a row a wavelength, cd/m² sr.
     pub fn rgb_weights(&self) -> Vec<[f64; 3]> {
-        self.weights.iter().map(|w| multiply(&self.space.from_xyz(), *w)).collect()
+        self.weights.iter().map(|w| multiply(&self.rgb.from_xyz, *w)).collect()
     }
 
     /// The same for the four wavelengths of the compact layout.
     pub fn four_rgb_weights(&self) -> Vec<[f64; 3]> {
-        self.four_weights.iter().map(|w| multiply(&self.space.from_xyz(), *w)).collect()
+        self.four_weights.iter().map(|w| multiply(&self.rgb.from_xyz, *w)).collect()
     }
 
     /// Wavelengths of the compact layout, nm.
@@ -120,8 +139,8 @@ pub fn judge(weights: &[[f64; 3]], transfers: &[Vec<f64>], references: &[[f64; 3
 
 /// By how much the error of each sky counts: relative to the length of its RGB, times its share in the fit, which
 /// falls from 1 by day to that of twilight as the sun sets.
-fn factors(space: ColourSpace, xyz: &[[f64; 3]], mu_s: &[f64]) -> Vec<f64> {
-    let matrix = space.from_xyz();
+fn factors(rgb: &RgbMatrix, xyz: &[[f64; 3]], mu_s: &[f64]) -> Vec<f64> {
+    let matrix = rgb.from_xyz;
     let factor = |(xyz, mu_s): (&[f64; 3], &f64)| {
         let length = multiply(&matrix, *xyz).iter().map(|v| v * v).sum::<f64>().sqrt();
         if xyz[1] > 0.0 && length > 0.0 { (mu_s / DAY).clamp(TWILIGHT_SHARE, 1.0) / length } else { 0.0 }
@@ -137,8 +156,8 @@ struct Sums {
 }
 
 impl Sums {
-    fn new(space: ColourSpace, transfers: &[Vec<f64>], xyz: &[[f64; 3]], factors: &[f64]) -> Self {
-        let matrix = space.from_xyz();
+    fn new(rgb: &RgbMatrix, transfers: &[Vec<f64>], xyz: &[[f64; 3]], factors: &[f64]) -> Self {
+        let matrix = rgb.from_xyz;
         let count = transfers.first().map_or(0, Vec::len);
         let mut s =
             Sums { gram: vec![vec![0.0; count]; count], right: vec![[0.0; 3]; count], squares: [0.0; 3] };

@@ -42,13 +42,17 @@ const IN_MEMORY: &str = "the bake in memory";
 pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -> Result<Product> {
     let solved = Solved::new(planet, settings, stage)?;
     stage("colours");
-    let palette = solved.palette()?;
+    let sample = solved.sample();
+    let palette = solved.palette(&sample)?;
     let filled = solved.fill(&palette, stage)?;
 
     stage("encode");
-    let mut files = Files::encode(&filled.tables)?;
+    let mut files = Files::encode(&filled.tables, &settings.storage)?;
     if let (true, Some(light)) = (settings.spectral, &solved.paper_light) {
         files.extra.extend(spectral::files(&solved.paper, light, planet, settings)?);
+    }
+    if solved.full_light.is_some() && sample.iter().any(|s| !s.transfers.is_empty()) {
+        files.extra.push(skies::file(&sample, &settings.wavelengths_nm)?);
     }
     let mut manifest = describe::manifest(planet, settings, &palette, &solved.full, &files);
     if let Some(found) = &filled.three_atmosphere {
@@ -77,6 +81,7 @@ pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -
     manifest.files = files.others();
     manifest.quality = Value::Object(quality);
     manifest.warnings = warnings;
+    manifest.seal()?;
     let text = manifest.to_json()?;
     let mut out = files.into_bytes();
     out.push(("bake.json".into(), text.into_bytes()));
@@ -127,11 +132,15 @@ impl<'a> Solved<'a> {
         }
     }
 
-    fn palette(&self) -> Result<Palette> {
+    /// Two samples of the planet's skies, on which colours are fitted and judged.
+    fn sample(&self) -> [skies::Skies; 2] {
         let (medium, light) = self.best();
-        let [training, held_out] = [0.0, 1.0].map(|half| skies::sample(light, medium, half));
+        [0.0, 1.0].map(|half| skies::sample(light, medium, half))
+    }
+
+    fn palette(&self, sample: &[skies::Skies; 2]) -> Result<Palette> {
         let irradiance = &self.planet.star.irradiance;
-        Palette::fit(&self.settings.wavelengths_nm, irradiance, self.settings.space, &training, &held_out)
+        Palette::fit(&self.settings.wavelengths_nm, irradiance, &self.settings.rgb, sample)
     }
 
     fn fill(&self, palette: &Palette, stage: &mut dyn FnMut(&str)) -> Result<Filled> {

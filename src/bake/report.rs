@@ -81,7 +81,7 @@ fn rgb(palette: &Palette, light: &[f64]) -> [f64; 3] {
 }
 
 fn rgb_of(palette: &Palette, xyz: [f64; 3]) -> [f64; 3] {
-    multiply(&palette.space.from_xyz(), xyz.map(|v| v / palette.star_xyz[1]))
+    multiply(&palette.rgb.from_xyz, xyz.map(|v| v / palette.star_xyz[1]))
 }
 
 /// What the solver says of one medium: orders, residual, energy balance, and the spherical albedo per wavelength.

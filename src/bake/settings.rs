@@ -2,8 +2,9 @@
 
 use super::compact::Sizes;
 use super::water::Waters;
+use crate::export::container::Container;
 use crate::methods::literal::Gather;
-use crate::spectrum::ColourSpace;
+use crate::spectrum::{ColourSpace, Rgb, White};
 use crate::table::Elek2010;
 use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
@@ -37,6 +38,21 @@ pub enum Solver {
     Literal { samples: usize, gather: Gather },
 }
 
+/// In which files tables are stored.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Storage {
+    /// Besides EXR.
+    pub containers: Vec<Container>,
+    /// Slices of EXR files lie in one column and not in a grid.
+    pub column: bool,
+}
+
+impl Storage {
+    fn formats(&self) -> Vec<&str> {
+        [Container::Exr].iter().chain(&self.containers).map(|c| c.name()).collect()
+    }
+}
+
 /// Settings of a bake.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -45,9 +61,10 @@ pub struct Settings {
     pub compact_sizes: Sizes,
     pub orders: Orders,
     pub wavelengths_nm: Vec<f64>,
-    pub space: ColourSpace,
+    pub rgb: Rgb,
     pub solver: Solver,
     pub spectral: bool,
+    pub storage: Storage,
     pub waters: Waters,
     /// The planet is a shipped preset as it is, so that `verify` may tell when a later tool ships another.
     pub shipped_preset: bool,
@@ -66,9 +83,10 @@ impl Default for Settings {
             compact_sizes: Sizes::default(),
             orders: Orders::Converged { tolerance: TOLERANCE },
             wavelengths_nm: crate::spectrum::grid(WAVELENGTHS),
-            space: ColourSpace::Srgb,
+            rgb: Rgb { space: ColourSpace::Srgb, white: None },
             solver: Solver::Moments,
             spectral: false,
+            storage: Storage::default(),
             waters: Waters::default(),
             shipped_preset: false,
         }
@@ -98,7 +116,10 @@ impl Settings {
             "compact_multiple_size": self.compact_sizes.multiple,
             "orders": orders,
             "solver": solver,
+            "white": white(&self.rgb),
             "spectral": self.spectral,
+            "formats": self.storage.formats(),
+            "exr_atlas": if self.storage.column { "column" } else { "grid" },
             "waters": self.waters.list.iter().map(|w| w.name.as_str()).collect::<Vec<_>>(),
             "water_size": self.waters.size,
             "water_orders": match self.waters.orders {
@@ -109,4 +130,14 @@ impl Settings {
             "shipped_preset": self.shipped_preset,
         })
     }
+}
+
+/// For the manifest: what is adapted to the white of the colour space, and how; null if nothing is.
+pub fn white(rgb: &Rgb) -> Value {
+    let Some((white, by)) = rgb.white else { return Value::Null };
+    let from = match white {
+        White::Star => json!("star"),
+        White::Xy(xy) => json!(xy),
+    };
+    json!({ "from": from, "by": by })
 }

@@ -1,9 +1,13 @@
 //! A sample of a planet's own skies, on which colours are fitted and judged.
 
+use crate::error::{Error, Result};
+use crate::export::exr::{Spectral, from_exr_bytes, spectral_attributes, spectral_channel, to_exr_bytes};
+use crate::export::{Atlas, Samples};
 use crate::lanes::Lanes;
 use crate::medium::Medium;
 use crate::transport::fill::{Painter, RayLight, SunPairs, Wanted};
 use crate::transport::solve::{Batch, Solution, lowest_sun};
+use std::path::Path;
 
 /// Skies, sunlit ground and sunlight of a planet, a sky an entry.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -116,8 +120,75 @@ fn batch_sample(
     }
     for sun in lattice.suns.into_iter().filter(|&s| s > 0.0) {
         let through = solution.sun_transmittance_of(batch, medium.ground_radius, sun);
+        // As a file of them keeps it.
+        let sun = f64::from(sun as f32);
         out.push((through, sun));
         out.push((through * through, sun));
     }
     out
+}
+
+/// Where the samples of a bake are kept.
+pub const FILE: &str = "compact/skies.exr";
+/// Channels that are no spectra: the sample that a sky belongs to, and the cosine of the sun's zenith angle.
+const SAMPLE: &str = "sample";
+const MU_S: &str = "mu_s";
+
+/// Path, description and content of a file with both samples, a pixel a sky, every bit kept.
+pub fn file(samples: &[Skies; 2], wavelengths_nm: &[f64]) -> Result<(String, String, Vec<u8>)> {
+    let all = || samples.iter().flat_map(|s| &s.transfers);
+    let mut atlas = Atlas::new(FILE, [all().count(), 1, 1]);
+    atlas.attributes = spectral_attributes();
+    for (w, nm) in wavelengths_nm.iter().enumerate() {
+        let values = Samples::float(all().map(|t| t[w]));
+        atlas = atlas.with(spectral_channel(Spectral::Ratio, *nm), values);
+    }
+    let numbers = samples.iter().enumerate().flat_map(|(n, s)| s.transfers.iter().map(move |_| n as f64));
+    atlas = atlas.with(SAMPLE, Samples::float(numbers));
+    atlas = atlas.with(MU_S, Samples::float(samples.iter().flat_map(|s| s.mu_s.iter().copied())));
+    let about = "skies of this planet, radiance over the star's irradiance, 1/sr, at all wavelengths: sample 0, on \
+                 which the matrices were fitted, and sample 1, on which they were judged";
+    Ok((FILE.into(), about.into(), to_exr_bytes(&atlas)?))
+}
+
+/// Both samples from the bytes of that file; `path` is for messages.
+///
+/// # Errors
+/// `File` for a file that is damaged, or of other wavelengths.
+pub fn from_file(path: &Path, bytes: &[u8], wavelengths_nm: &[f64]) -> Result<[Skies; 2]> {
+    let atlas = from_exr_bytes(path, bytes)?;
+    let channel = |name: &str| {
+        let found = atlas.channel(name);
+        found.ok_or_else(|| Error::file(path, format!("it has no channel {name}")))
+    };
+    let spectra = wavelengths_nm.iter().map(|nm| channel(&spectral_channel(Spectral::Ratio, *nm)));
+    let spectra = spectra.collect::<Result<Vec<_>>>()?;
+    let (numbers, suns) = (channel(SAMPLE)?, channel(MU_S)?);
+    let mut samples: [Skies; 2] = Default::default();
+    for k in 0..atlas.width {
+        let sample = &mut samples[usize::from(numbers.samples.get(k) > 0.5)];
+        sample.transfers.push(spectra.iter().map(|c| f64::from(c.samples.get(k))).collect());
+        sample.mu_s.push(f64::from(suns.samples.get(k)));
+    }
+    Ok(samples)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What was sampled comes back bit for bit, in its sample and order.
+    #[test]
+    fn samples_come_back() {
+        let sky = |v: f32| vec![f64::from(v), f64::from(v * 1e-7), 0.0];
+        let of = |v: &[f32]| Skies {
+            transfers: v.iter().map(|&v| sky(v)).collect(),
+            mu_s: v.iter().map(|&v| f64::from(-v)).collect(),
+        };
+        let samples = [of(&[0.1, 0.2, 0.3]), of(&[0.7])];
+        let nm = [380.0, 412.345_678, 780.0];
+        let (_, _, bytes) = file(&samples, &nm).unwrap();
+        assert_eq!(from_file(Path::new(FILE), &bytes, &nm).unwrap(), samples);
+        assert!(from_file(Path::new(FILE), &bytes, &[500.0]).is_err());
+    }
 }

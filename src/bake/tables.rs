@@ -35,14 +35,12 @@ impl Baked {
     /// layout three-atmosphere.
     pub fn atlas(&self) -> Atlas {
         let name = format!("{}/{}", self.layout, self.name);
-        let sides =
-            |across: usize| [0..across, across..across + 1, across + 1..4].map(|axes| self.texels_of(axes));
+        let across = self.across();
+        let sides = [0..across, across..across + 1, across + 1..4].map(|axes| self.texels_of(axes));
         let mut atlas = if self.layout == three_atmosphere::LAYOUT {
-            // Its reader wants x to be all but the last two axes.
-            let across = self.axes.len().saturating_sub(2).max(1);
-            Atlas::new(name, sides(across)).in_a_strip_from_the_bottom()
+            Atlas::new(name, sides).in_a_strip_from_the_bottom()
         } else {
-            Atlas::new(name, sides(1))
+            Atlas::new(name, sides)
         };
         for (k, c) in self.channels.iter().enumerate() {
             atlas = atlas.with(c.name.clone(), Samples::half(self.texels.iter().map(|t| f64::from(t[k]))));
@@ -84,10 +82,25 @@ impl Baked {
                 columns: atlas.columns,
                 rows: atlas.rows(),
                 slice_order: "row-major".into(),
+                slice_index: self.slice_index(),
                 origin: atlas.origin,
             },
             encoding: self.encoding.clone(),
             channels,
+            containers: Vec::new(),
+        }
+    }
+
+    /// How many axes x is made of: the reader of three-atmosphere wants all but the last two.
+    fn across(&self) -> usize {
+        if self.layout == three_atmosphere::LAYOUT { self.axes.len().saturating_sub(2).max(1) } else { 1 }
+    }
+
+    fn slice_index(&self) -> String {
+        match self.axes.get(self.across() + 1..).unwrap_or_default() {
+            [] => "0".into(),
+            [z] => z.name.clone(),
+            [z, w, ..] => format!("{} * {} + {}", w.name, z.size, z.name),
         }
     }
 }

@@ -1,6 +1,9 @@
 //! `tyndall bake`: presets in, folders of tables out.
 
+mod depfile;
+mod fresh;
 mod jobs;
+mod list;
 mod progress;
 mod settings;
 mod summary;
@@ -11,9 +14,11 @@ use crate::bake::bake;
 use crate::bake::memory::estimate;
 use crate::bake::settings::{Layout, Settings, TOLERANCE};
 use crate::error::{Error, Result};
+use crate::export::claim::Claim;
+use crate::export::container::Container;
 use crate::export::staging::Staging;
 use crate::preset::{self, Planet};
-use crate::spectrum::ColourSpace;
+use crate::spectrum::{Adaptation, ColourSpace, White};
 use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
 use jobs::{Bounds, run_all};
@@ -23,15 +28,29 @@ use summary::{Done, Outcome};
 
 /// Bake the lookup tables of planets into folders of EXR files with a bake.json
 #[derive(clap::Args, Debug)]
-#[command(before_help = "Example: tyndall bake earth --layout compact --out out
-         tyndall bake --all --memory 2GiB")]
+#[command(
+    before_help = "Example: tyndall bake earth --layout compact --out out
+         tyndall bake earth mars --check
+         tyndall bake --all --memory 2GiB
+         tyndall bake --list planets.txt --shard 3/8",
+    after_help = "A bake that is there already, from the same preset, settings and program and with every file whole, is \
+                  not baked again.
+Exit code 0: done; 1: --check found a stale bake; 2: bad arguments or presets; 3: the machine failed, or a stop."
+)]
 pub struct Args {
     /// Presets by name (see `tyndall presets`) or paths of JSON files
-    #[arg(required_unless_present = "all", value_name = "PRESET")]
+    #[arg(required_unless_present_any = ["all", "list"], value_name = "PRESET")]
     presets: Vec<String>,
     /// All shipped planets
     #[arg(long, conflicts_with = "presets")]
     all: bool,
+    /// Presets from a file, one a line. Several processes may work on one list and one --out: none bakes what another
+    /// is at or has done
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["presets", "all"])]
+    list: Option<PathBuf>,
+    /// Of the presets only every Nth from the Kth (1 to N)
+    #[arg(long, value_name = "K/N", value_parser = list::shard)]
+    shard: Option<list::Shard>,
     /// Memory that bakes may take together, e.g. 2GiB: as many run at once as fit [default: half of what is free]
     #[arg(long, value_name = "AMOUNT", value_parser = memory::parse)]
     memory: Option<u64>,
@@ -66,9 +85,31 @@ pub struct Args {
     /// Primaries of RGB tables, always linear
     #[arg(long, default_value = "srgb", value_parser = space)]
     colour_space: ColourSpace,
+    /// What becomes the white of the colour space: star, an illuminant (a, d50, d55, d65, aces, e) or a chromaticity
+    /// x,y [default: nothing is adapted]
+    #[arg(long, value_name = "WHITE", value_parser = White::parse)]
+    white: Option<White>,
+    /// How --white is adapted
+    #[arg(long, value_enum, default_value = "bradford", requires = "white")]
+    adaptation: Adaptation,
+    /// Containers of tables, comma-separated; EXR is always written, since this tool reads it
+    #[arg(long, value_delimiter = ',', value_enum, default_values_t = [Container::Exr])]
+    formats: Vec<Container>,
+    /// How slices lie in the pictures of EXR files: in a grid, or one below the other
+    #[arg(long, default_value = "grid", value_parser = ["grid", "column"])]
+    exr_atlas: String,
     /// Write spectral EXR files too (large)
     #[arg(long)]
     spectral: bool,
+    /// Bake even what is there already from the same preset, settings and program
+    #[arg(long, conflicts_with = "check")]
+    force: bool,
+    /// Solve and write nothing: say what of the bakes in --out is stale, a line each, with exit code 1 if anything is
+    #[arg(long, conflicts_with_all = ["perf", "depfile"])]
+    check: bool,
+    /// Write which files the bakes depend on, as make and ninja read it
+    #[arg(long, value_name = "FILE")]
+    depfile: Option<PathBuf>,
     /// Set a value of the preset, e.g. constituents.aerosol.density_factor=10; repeatable
     #[arg(long, value_name = "PATH.TO.KEY=VALUE")]
     set: Vec<String>,
@@ -78,7 +119,7 @@ pub struct Args {
     /// Instruction set of the hot loops; the bytes do not depend on it
     #[arg(long, value_enum, default_value = "auto")]
     isa: IsaChoice,
-    /// Print the time of each stage; presets then run one after another
+    /// Print the time of each stage; presets then run one after another, also those that are there already
     #[arg(long)]
     perf: bool,
     /// Print the outcome as JSON, a line for each preset
@@ -89,7 +130,7 @@ pub struct Args {
     quiet: bool,
 }
 
-fn space(name: &str) -> std::result::Result<ColourSpace, String> {
+pub(super) fn space(name: &str) -> std::result::Result<ColourSpace, String> {
     let all = ColourSpace::ALL;
     let names: Vec<&str> = all.iter().map(|s| s.name()).collect();
     all.into_iter().find(|s| s.name() == name).ok_or(format!("expected one of {}", names.join(", ")))
@@ -100,21 +141,27 @@ fn space(name: &str) -> std::result::Result<ColourSpace, String> {
 pub fn run(args: &Args) -> Result<()> {
     args.isa.apply()?;
     let settings = settings::settings(args)?;
-    let asked = asked(args);
+    let asked = list::asked(args)?;
     let planets: Vec<Result<Planet>> = asked.iter().map(|p| preset::load(p, &args.set)).collect();
     refuse_shared_folders(&asked, &planets)?;
     share_threads(args.threads)?;
+    if args.check {
+        return fresh::check(args, &settings, &asked, planets);
+    }
+    let names = depfile::names(&planets);
     let progress = Progress::new(args.quiet);
     if asked.len() > 1 {
         planets.iter().filter_map(|p| p.as_ref().err()).for_each(|e| progress.always(&format!("error: {e}")));
     }
     let outcomes = bake_all(args, &settings, &progress, &asked, planets);
     summary::tell(&outcomes, args.json, args.perf)?;
-    summary::failure(outcomes)
+    summary::failure(outcomes)?;
+    depfile::write(args, &asked, &names)
 }
 
-fn asked(args: &Args) -> Vec<String> {
-    if args.all { preset::shipped_names().map(str::to_string).collect() } else { args.presets.clone() }
+/// The settings of one preset's bake.
+fn of_preset(args: &Args, settings: &Settings, asked: &str) -> Settings {
+    Settings { shipped_preset: args.set.is_empty() && preset::is_shipped(asked), ..settings.clone() }
 }
 
 /// Two planets of one name would share a folder, and the first bake would be lost in silence.
@@ -142,22 +189,30 @@ fn bake_all(
     let needs: Vec<u64> = planets.iter().map(need).collect();
     let memory = args.memory.unwrap_or_else(default_memory);
     let at_once = if args.perf { 1 } else { rayon::current_num_threads() };
-    let answers = run_all(&needs, Bounds { memory, at_once }, |k| {
+    let bounds = Bounds { memory, at_once };
+    let attempt = |k: usize, busy: Busy| {
         let planet = planets[k].as_ref().ok()?;
-        let shipped_preset = args.set.is_empty() && preset::is_shipped(&asked[k]);
-        let settings = Settings { shipped_preset, ..settings.clone() };
+        let settings = of_preset(args, settings, &asked[k]);
         if needs[k] > memory && planets.len() > 1 {
             let (need, bound) = (memory::shown(needs[k]), memory::shown(memory));
             progress
                 .say(&format!("{}: needs some {need}, over the bound of {bound}: runs alone", planet.name));
         }
-        let result = one(args, &settings, progress, planet, needs[k]);
+        let result = one(args, &settings, progress, planet, needs[k], busy);
         if let (Err(error), true) = (&result, planets.len() > 1) {
             progress.always(&format!("error: {}: {error}", planet.name));
         }
         Some(result)
-    });
-    let answers = answers.into_iter().map(Option::flatten);
+    };
+    let mut answers: Vec<Option<Result<Option<Done>>>> =
+        run_all(&needs, bounds, |k| attempt(k, Busy::Leave)).into_iter().map(Option::flatten).collect();
+    // What other processes were at; done by now, in most cases, or left by one that was killed.
+    let left: Vec<usize> = (0..answers.len()).filter(|&k| matches!(answers[k], Some(Ok(None)))).collect();
+    let needs_left: Vec<u64> = left.iter().map(|&k| needs[k]).collect();
+    let later = run_all(&needs_left, bounds, |n| attempt(left[n], Busy::Wait));
+    left.iter().zip(later).for_each(|(&k, answer)| answers[k] = answer.flatten());
+    let whole = |answer: Result<Option<Done>>| answer.transpose();
+    let answers = answers.into_iter().map(|answer| answer.and_then(whole));
     planets.into_iter().zip(answers).zip(asked).map(|((p, a), asked)| outcome(args, asked, p, a)).collect()
 }
 
@@ -178,9 +233,39 @@ fn default_memory() -> u64 {
     memory::available().map_or(2 << 30, |free| free / 2)
 }
 
-/// One bake, from planet to folder.
-fn one(args: &Args, settings: &Settings, progress: &Progress, planet: &Planet, need: u64) -> Result<Done> {
+/// What to do where another process bakes the same folder.
+#[derive(Clone, Copy, PartialEq)]
+enum Busy {
+    Leave,
+    Wait,
+}
+
+/// One bake, from planet to folder; none if it was left to another process.
+fn one(
+    args: &Args,
+    settings: &Settings,
+    progress: &Progress,
+    planet: &Planet,
+    need: u64,
+    busy: Busy,
+) -> Result<Option<Done>> {
     let folder = args.out.join(&planet.name);
+    let _claim = match (args.list.is_some(), busy) {
+        (false, _) => None,
+        (true, Busy::Wait) => Some(Claim::take(&folder)?),
+        (true, Busy::Leave) => match Claim::try_take(&folder)? {
+            None => return Ok(None),
+            claim => claim,
+        },
+    };
+    if !args.force
+        && !args.perf
+        && let Some(done) = fresh::current(&folder, planet, settings)
+    {
+        Staging::sweep_beside(&folder);
+        progress.end(&planet.name, "is there already; --force bakes it again");
+        return Ok(Some(done));
+    }
     let staging = Staging::begin(&folder)?;
     let about = format!(", in some {}", memory::shown(need));
     let mut clock = progress.begin(&planet.name, stages(settings), &about);
@@ -192,12 +277,13 @@ fn one(args: &Args, settings: &Settings, progress: &Progress, planet: &Planet, n
     staging.commit()?;
     product.manifest.warnings.iter().for_each(|w| progress.say(&format!("warning: {}: {w}", planet.name)));
     progress.end(&planet.name, &format!("done in {:.1} s", clock.elapsed().as_secs_f64()));
-    Ok(Done {
+    Ok(Some(Done {
         folder,
         files: product.files.len(),
         bytes: product.files.iter().map(|f| f.1.len()).sum(),
         warnings: product.manifest.warnings,
         quality: product.manifest.quality.as_object().cloned().unwrap_or_default(),
         stages: clock.finish(),
-    })
+        reused: false,
+    }))
 }

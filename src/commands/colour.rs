@@ -4,6 +4,7 @@ use super::colour_input::{Named, black_body, read};
 use super::text::{number, print};
 use crate::error::Result;
 use crate::spectrum::*;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Spectra as CSV to XYZ, xy, linear RGB and CIELAB.
@@ -26,16 +27,25 @@ pub struct Args {
     /// The Y that is white: RGB (1, 1, 1) and L* = 100 [default: 100 if relative, 1 if photometric]
     #[arg(long, value_name = "Y")]
     pub white_y: Option<f64>,
-    /// Linear RGB space, its own white, no adaptation
+    /// Linear RGB space
     #[arg(long, value_enum, default_value = "srgb")]
     pub colour_space: ColourSpace,
+    /// What becomes the white of the space: an illuminant or x,y [default: nothing is adapted]
+    #[arg(long, value_name = "WHITE", value_parser = White::parse)]
+    pub white: Option<White>,
+    /// How --white is adapted
+    #[arg(long, value_enum, default_value = "bradford", requires = "white")]
+    pub adaptation: Adaptation,
+    /// Whose colours are meant
+    #[arg(long, value_enum, default_value = "cie1931-2deg")]
+    pub observer: Beholder,
     /// Add the ΔE2000 of each spectrum from the first (D65, both scaled so that the first has Y = 0.18)
     #[arg(long)]
     pub difference: bool,
     /// Print the 1 nm spectra that are summed, and no colours
     #[arg(long)]
     pub spectra: bool,
-    /// Print the matrices between XYZ and the colour space, and no colours
+    /// Print the matrices between XYZ and the colour space (with --white: adaptation included), and no colours
     #[arg(long)]
     pub matrix: bool,
     /// JSON instead of CSV
@@ -53,9 +63,9 @@ pub enum Scale {
 }
 
 impl Scale {
-    fn k(self) -> f64 {
+    fn k(self, observer: &Observer) -> f64 {
         match self {
-            Scale::Relative => 100.0 / y_bar_sum(),
+            Scale::Relative => 100.0 / observer.xyz(|_| 1.0)[1],
             Scale::Photometric => LUMINOUS_EFFICACY,
         }
     }
@@ -80,6 +90,9 @@ struct Colour {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
+    if args.white == Some(White::Star) {
+        return Err(crate::Error::Argument("--white star: there is no star here".into()));
+    }
     if args.matrix {
         return print(&matrices(args));
     }
@@ -115,8 +128,9 @@ fn warn_of_held_ends(spectra: &[Named]) {
 
 fn colours(args: &Args, spectra: &[Named]) -> Vec<Colour> {
     let white_y = args.white_y.unwrap_or(args.scale.default_white());
-    let to_rgb = args.colour_space.from_xyz();
-    let xyz_of = |s: &Named| Observer::cie1931().xyz_of(&s.spectrum).map(|v| v * args.scale.k());
+    let to_rgb = from_xyz(args);
+    let (observer, k) = (args.observer.observer(), args.scale.k(args.observer.observer()));
+    let xyz_of = |s: &Named| observer.xyz_of(&s.spectrum).map(|v| v * k);
     let first = xyz_of(&spectra[0]);
     let colour = |s: &Named| {
         let xyz = xyz_of(s);
@@ -131,6 +145,12 @@ fn colours(args: &Args, spectra: &[Named]) -> Vec<Colour> {
         }
     };
     spectra.iter().map(colour).collect()
+}
+
+/// XYZ to linear RGB, adaptation included.
+fn from_xyz(args: &Args) -> [[f64; 3]; 3] {
+    let white = args.white.map(|white| (white, args.adaptation));
+    Rgb { space: args.colour_space, white }.under(D65).from_xyz
 }
 
 fn as_csv(args: &Args, colours: &[Colour]) -> String {
@@ -157,8 +177,8 @@ fn as_json(args: &Args, colours: &[Colour]) -> String {
         object
     };
     let report = serde_json::json!({
-        "observer": "CIE 1931 2 degrees, 1 nm, 360-830 nm, plain summation",
-        "k": args.scale.k(),
+        "observer": format!("{}, 1 nm, 360-830 nm, plain summation", args.observer.name()),
+        "k": args.scale.k(args.observer.observer()),
         "white_y": args.white_y.unwrap_or(args.scale.default_white()),
         "colour_space": args.colour_space.name(),
         "lab_white": "D65",
@@ -168,11 +188,13 @@ fn as_json(args: &Args, colours: &[Colour]) -> String {
 }
 
 fn matrices(args: &Args) -> String {
-    let (from, to) = (args.colour_space.from_xyz(), args.colour_space.to_xyz());
+    let from = from_xyz(args);
+    let to = if args.white.is_some() { invert(&from) } else { args.colour_space.to_xyz() };
     if args.json {
         let report = serde_json::json!({
             "colour_space": args.colour_space.name(),
             "chromaticities": args.colour_space.chromaticities(),
+            "illuminants": ILLUMINANTS.iter().map(|(name, xy)| (name.to_string(), *xy)).collect::<BTreeMap<_, _>>(),
             "from_xyz": from,
             "to_xyz": to,
         });

@@ -87,7 +87,7 @@ pub fn wavelengths(text: &str) -> std::result::Result<Vec<f64>, String> {
 }
 
 /// Wavelengths of a run at most.
-const MOST_WAVELENGTHS: usize = 400;
+const MOST_WAVELENGTHS: usize = 500;
 
 /// Whether wavelengths (nm), in any order, are ones that a run may have.
 pub fn in_range(list: &[f64]) -> std::result::Result<(), String> {

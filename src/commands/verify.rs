@@ -76,6 +76,10 @@ pub fn differences(bake: &Path, shipped: impl Fn(&str) -> Option<String>) -> Res
     for table in &manifest.tables {
         let whats = check_file(folder, &table.file, &table.blake3, |bytes| check_table(table, bytes));
         found.extend(whats.into_iter().map(|what| difference(&table.file, what)));
+        for (file, hash) in table.files().skip(1) {
+            let whats = check_file(folder, file, hash, |_| Vec::new());
+            found.extend(whats.into_iter().map(|what| difference(file, what)));
+        }
     }
     for other in &manifest.files {
         let whats = check_file(folder, &other.file, &other.blake3, |_| Vec::new());
@@ -85,12 +89,26 @@ pub fn differences(bake: &Path, shipped: impl Fn(&str) -> Option<String>) -> Res
     Ok(found)
 }
 
+/// Files of the bake that are missing or whose bytes are not those of the manifest; what is in them is not looked at.
+pub fn lost_or_changed(folder: &Path, manifest: &Manifest) -> Vec<Difference> {
+    let tables = manifest.tables.iter().flat_map(|t| t.files());
+    let others = manifest.files.iter().map(|f| (&f.file, &f.blake3));
+    let check = |(file, hash): (&String, &String)| {
+        let whats = check_file(folder, file, hash, |_| Vec::new());
+        whats.into_iter().map(|what| difference(file, what)).collect::<Vec<_>>()
+    };
+    tables.chain(others).flat_map(check).collect()
+}
+
 fn difference(place: &str, what: impl Into<String>) -> Difference {
     Difference { place: place.to_string(), what: what.into() }
 }
 
 fn about_the_manifest(manifest: &Manifest, shipped: impl Fn(&str) -> Option<String>) -> Vec<Difference> {
     let mut found = Vec::new();
+    if !manifest.seal_holds() {
+        found.push(difference(MANIFEST, "a value in it was changed since it was baked (another BLAKE3)"));
+    }
     let preset = &manifest.preset;
     if hash_of(&preset.resolved) != preset.hash {
         found.push(difference("preset.hash", "is not that of the resolved preset beside it"));
@@ -199,7 +217,7 @@ fn check_channels(table: &Table, atlas: &Atlas) -> Vec<String> {
 
 /// Files in the folder that the manifest does not list.
 fn unlisted(folder: &Path, manifest: &Manifest) -> Result<Vec<Difference>> {
-    let tables = manifest.tables.iter().map(|t| t.file.as_str());
+    let tables = manifest.tables.iter().flat_map(|t| t.files().map(|f| f.0.as_str()));
     let others = manifest.files.iter().map(|f| f.file.as_str());
     let listed: BTreeSet<PathBuf> = tables.chain(others).chain([MANIFEST]).map(PathBuf::from).collect();
     let mut extra = BTreeSet::new();

@@ -55,11 +55,13 @@ pub(super) fn undisturbed<T>(step: impl FnOnce() -> Result<T>) -> Result<T> {
     if interrupted() { Err(Error::Interrupted) } else { step() }
 }
 
-/// Removes a folder, as far as that is possible; what stays is swept by a later bake. Another thread may be
+/// Removes a folder or a file, as far as that is possible; what stays is swept by a later bake. Another thread may be
 /// adding files at this moment, so one failure is not the end.
 pub(super) fn remove(folder: &Path) {
     for _ in 0..5 {
-        if fs::remove_dir_all(folder).is_ok() || !folder.exists() {
+        let file = fs::symlink_metadata(folder).is_ok_and(|m| !m.is_dir());
+        let removed = if file { fs::remove_file(folder) } else { fs::remove_dir_all(folder) };
+        if removed.is_ok() || !folder.exists() {
             return;
         }
     }

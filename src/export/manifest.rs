@@ -1,6 +1,7 @@
 //! `bake.json`: everything that a reader of a bake's files has to know, and nothing of the machine or the moment.
 
 use crate::error::{Error, Result};
+use crate::spectrum::Adaptation;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -33,6 +34,9 @@ pub struct Manifest {
     /// The quality report: orders and residual, errors by region, energy balance, counts of odd values.
     pub quality: Value,
     pub warnings: Vec<String>,
+    /// [`Manifest::own_hash`]; empty where nothing sealed it.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub manifest_blake3: String,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -40,6 +44,9 @@ pub struct Manifest {
 pub struct Tool {
     pub name: String,
     pub version: String,
+    /// Fingerprint of the sources that decide what a bake holds (see `build.rs`), 32 hexadecimal digits.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub source: String,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -79,8 +86,20 @@ pub struct Colour {
     pub observer: String,
     /// Chromaticity x, y of the white.
     pub white: [f64; 2],
+    /// The white that was adapted to the space's own; part of every matrix to RGB.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub adaptation: Option<Adapted>,
     /// By what they take and give, e.g. `xyz_to_rgb`; a row for each output.
     pub matrices: BTreeMap<String, Vec<Vec<f64>>>,
+}
+
+/// A chromatic adaptation to the white of a space.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Adapted {
+    /// Chromaticity x, y of what becomes white.
+    pub from: [f64; 2],
+    pub by: Adaptation,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -98,6 +117,29 @@ pub struct Table {
     pub packing: Packing,
     pub encoding: Encoding,
     pub channels: Vec<ChannelInfo>,
+    /// The same table, bit for bit, in other containers.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub containers: Vec<InContainer>,
+}
+
+/// A table in a container besides EXR.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct InContainer {
+    /// `ktx2`, `dds` or `npy`.
+    pub format: String,
+    pub file: String,
+    pub blake3: String,
+    /// Sizes as a reader of the file finds them.
+    pub shape: Vec<usize>,
+    pub about: String,
+}
+
+impl Table {
+    /// Path and hash of every file of the table, EXR first.
+    pub fn files(&self) -> impl Iterator<Item = (&String, &String)> {
+        [(&self.file, &self.blake3)].into_iter().chain(self.containers.iter().map(|c| (&c.file, &c.blake3)))
+    }
 }
 
 /// How texels follow a physical coordinate.
@@ -124,6 +166,9 @@ pub struct Packing {
     pub rows: usize,
     /// `row-major`: slice s lies in column s mod columns, row s / columns.
     pub slice_order: String,
+    /// The number of a slice from the texels of the axes that slices share, e.g. `azimuth * 32 + sun`.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub slice_index: String,
     pub origin: Origin,
 }
 

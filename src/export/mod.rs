@@ -2,12 +2,16 @@
 //! pictures. No physics here.
 
 pub mod atlas;
+pub mod changes;
+pub mod claim;
+pub mod container;
 pub mod exr;
 mod font;
 pub mod interrupt;
 pub mod manifest;
 pub mod picture;
 pub mod replace;
+mod seal;
 pub mod sheet;
 pub mod staging;
 

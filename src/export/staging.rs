@@ -46,6 +46,13 @@ impl Staging {
         Err(Error::machine(target, io::Error::other("no free name for a temporary folder beside it")))
     }
 
+    /// Removes what earlier bakes of this folder left beside it when they were killed, as far as that is possible.
+    pub fn sweep_beside(target: &Path) {
+        if let Ok(target) = resolve(target) {
+            sweep(&target);
+        }
+    }
+
     /// Writes a file of the bake, its path relative to the bake's folder. Returns the BLAKE3 hash of `bytes`,
     /// 64 hexadecimal digits.
     pub fn write(&self, relative: &str, bytes: &[u8]) -> Result<String> {

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::spectrum::Spectrum;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Name and JSON text of every shipped planet, in the order they are listed.
 const PLANETS: &[(&str, &str)] = &[
@@ -123,13 +123,18 @@ pub fn spectrum(name: &str, quantity: &str, beside: &str) -> Result<Option<Spect
     if let Some((_, text)) = SPECTRA.iter().find(|s| s.0 == name) {
         return parse(&format!("presets/spectra/{name}.csv"), text, quantity).map(Some);
     }
-    if !name.ends_with(".csv") {
-        return Ok(None);
-    }
-    let near = Path::new(beside).parent().unwrap_or(Path::new("")).join(name);
-    let path = if near.exists() { near } else { Path::new(name).to_path_buf() };
+    let Some(path) = spectrum_path(name, beside) else { return Ok(None) };
     let text = std::fs::read_to_string(&path).map_err(|e| Error::reading(&path, e))?;
     parse(&path.display().to_string(), &text, quantity).map(Some)
+}
+
+/// Where the spectrum of a name lies on disk; none for a shipped one, or a name that is not of a CSV file.
+pub fn spectrum_path(name: &str, beside: &str) -> Option<PathBuf> {
+    if spectrum_names().any(|shipped| shipped == name) || !name.ends_with(".csv") {
+        return None;
+    }
+    let near = Path::new(beside).parent().unwrap_or(Path::new("")).join(name);
+    Some(if near.exists() { near } else { Path::new(name).to_path_buf() })
 }
 
 fn parse(file: &str, text: &str, quantity: &str) -> Result<Spectrum> {
@@ -178,7 +183,7 @@ mod tests {
         let mut waters: Vec<&str> = shipped_water_names().collect();
         waters.sort_unstable();
         assert_eq!(names("waters"), waters);
-        let mut spectra: Vec<&str> = spectrum_names().chain(["cie1931-2deg"]).collect();
+        let mut spectra: Vec<&str> = spectrum_names().chain(["cie1931-2deg", "cie1964-10deg"]).collect();
         spectra.sort_unstable();
         assert_eq!(names("spectra"), spectra);
     }

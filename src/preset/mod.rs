@@ -6,6 +6,7 @@
 
 mod bounds;
 mod coefficient;
+mod files;
 mod fournier_forand;
 mod json;
 mod library;
@@ -25,6 +26,7 @@ pub mod schema;
 mod water;
 
 pub use coefficient::Coefficient;
+pub use files::{planet_files, water_files};
 pub use library::{shipped, shipped_names, shipped_water_names, shipped_waters};
 pub use phase::{KingFactor, PhaseLaw, Stated};
 pub use planet::{Optics, Planet, Star, Substance};

@@ -120,7 +120,7 @@ pub fn pictures(bake: &Path, manifest: &Manifest, layout: &str) -> Result<BTreeM
 ///
 /// # Errors
 /// `File` for a file that is missing, damaged, or another than the one that was baked.
-fn picture(folder: &Path, table: &Table) -> Result<Atlas> {
+pub fn picture(folder: &Path, table: &Table) -> Result<Atlas> {
     let path = folder.join(&table.file);
     let bytes = std::fs::read(&path).map_err(|e| Error::reading(&path, e))?;
     let atlas = exr::from_exr_bytes(&path, &bytes)?;

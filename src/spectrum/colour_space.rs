@@ -11,6 +11,10 @@ pub enum ColourSpace {
     Srgb,
     /// ITU-R BT.2020, white D65.
     Rec2020,
+    /// ACES2065-1: the AP0 primaries and white of S-2008-001 (about D60), which hold every colour there is.
+    #[serde(rename = "aces2065-1")]
+    #[value(name = "aces2065-1")]
+    Aces20651,
     /// ACEScg: the AP1 primaries and white of S-2014-004 (about D60).
     Acescg,
 }
@@ -22,7 +26,8 @@ pub fn white_of(xy: [f64; 2]) -> [f64; 3] {
 
 impl ColourSpace {
     /// Every colour space, in the order of the command line.
-    pub const ALL: [ColourSpace; 3] = [ColourSpace::Srgb, ColourSpace::Rec2020, ColourSpace::Acescg];
+    pub const ALL: [ColourSpace; 4] =
+        [ColourSpace::Srgb, ColourSpace::Rec2020, ColourSpace::Acescg, ColourSpace::Aces20651];
 
     /// Name as on the command line and in manifests.
     pub fn name(self) -> &'static str {
@@ -30,6 +35,7 @@ impl ColourSpace {
             ColourSpace::Srgb => "srgb",
             ColourSpace::Rec2020 => "rec2020",
             ColourSpace::Acescg => "acescg",
+            ColourSpace::Aces20651 => "aces2065-1",
         }
     }
 
@@ -39,6 +45,7 @@ impl ColourSpace {
             ColourSpace::Srgb => [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06], [0.3127, 0.3290]],
             ColourSpace::Rec2020 => [[0.708, 0.292], [0.170, 0.797], [0.131, 0.046], [0.3127, 0.3290]],
             ColourSpace::Acescg => [[0.713, 0.293], [0.165, 0.830], [0.128, 0.044], [0.32168, 0.33767]],
+            ColourSpace::Aces20651 => [[0.7347, 0.2653], [0.0, 1.0], [0.0001, -0.0770], [0.32168, 0.33767]],
         }
     }
 
@@ -97,13 +104,14 @@ pub fn srgb_decode(encoded: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The derived sRGB matrix, known to nine digits, and the published BT.2020 and ACEScg ones.
+    /// The derived sRGB matrix, known to nine digits, and the published BT.2020, ACEScg and ACES2065-1 ones.
     #[test]
     fn matrices_are_the_published_ones() {
         let known = [
             (ColourSpace::Srgb, [3.240_969_942, -1.537_383_178, -0.498_610_760], 1e-9),
             (ColourSpace::Rec2020, [1.716_651_188, -0.355_670_784, -0.253_366_281], 1e-9),
             (ColourSpace::Acescg, [1.641_023_379_7, -0.324_803_294_2, -0.236_424_695_2], 1e-9),
+            (ColourSpace::Aces20651, [1.049_811_017_5, 0.0, -0.000_097_484_5], 1e-9),
         ];
         for (space, row, tolerance) in known {
             for c in 0..3 {

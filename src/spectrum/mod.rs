@@ -1,6 +1,7 @@
 //! Spectra and what the eye makes of them: wavelength grids, Planck's law, the CIE observer, colour spaces,
 //! and the two ways back from a few wavelengths to XYZ. Wavelengths in nm, everything else in SI.
 
+mod adaptation;
 mod colour_space;
 mod curve;
 mod lab;
@@ -10,14 +11,15 @@ mod reconstruct;
 mod spline;
 mod weights;
 
+pub use adaptation::{Adaptation, ILLUMINANTS, Rgb, RgbMatrix, White};
 pub use colour_space::{ColourSpace, invert, multiply, srgb_decode, srgb_encode, white_of};
 pub use curve::Spectrum;
 pub use lab::{D65, Lab, delta_e_2000, delta_e_2000_scaled, lab_of_xyz};
-pub use observer::{LUMINOUS_EFFICACY, OBSERVER_RANGE, Observer, chromaticity, y_bar_sum};
+pub use observer::{Beholder, LUMINOUS_EFFICACY, OBSERVER_RANGE, Observer, chromaticity, y_bar_sum};
 pub use planck::planck_law;
 pub use reconstruct::Reconstruction;
 pub use spline::LogSpline;
-pub use weights::{DEFAULT_RIDGE, fit_weights, fit_weights_by, hat_weights, weighted};
+pub use weights::{DEFAULT_RIDGE, fit_weights, fit_weights_by, hat_weights, hat_weights_seen_by, weighted};
 
 /// First and last wavelength of every planet's spectra, nm.
 pub const RANGE: (f64, f64) = (380.0, 780.0);

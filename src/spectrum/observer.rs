@@ -9,7 +9,37 @@ pub const LUMINOUS_EFFICACY: f64 = 683.0;
 /// First and last wavelength of the tabulated observer, nm.
 pub const OBSERVER_RANGE: (usize, usize) = (360, 830);
 
-const TABLE: &str = include_str!("../../presets/spectra/cie1931-2deg.csv");
+const TABLE_1931: &str = include_str!("../../presets/spectra/cie1931-2deg.csv");
+const TABLE_1964: &str = include_str!("../../presets/spectra/cie1964-10deg.csv");
+
+/// Whose colours are meant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Beholder {
+    /// CIE 1931, 2°: the one of all RGB spaces.
+    #[default]
+    #[value(name = "cie1931-2deg")]
+    Cie1931,
+    /// CIE 1964, 10°: for large fields, as skies are. Its Y is no luminance.
+    #[value(name = "cie1964-10deg")]
+    Cie1964,
+}
+
+impl Beholder {
+    pub fn observer(self) -> &'static Observer {
+        match self {
+            Beholder::Cie1931 => Observer::cie1931(),
+            Beholder::Cie1964 => Observer::cie1964(),
+        }
+    }
+
+    /// As in manifests.
+    pub fn name(self) -> &'static str {
+        match self {
+            Beholder::Cie1931 => "CIE 1931 2 degrees",
+            Beholder::Cie1964 => "CIE 1964 10 degrees",
+        }
+    }
+}
 
 /// The colour-matching functions x̄, ȳ, z̄ at whole nanometres.
 pub struct Observer {
@@ -21,7 +51,13 @@ impl Observer {
     /// The CIE 1931 2° observer at 1 nm, 360–830 nm (471 rows).
     pub fn cie1931() -> &'static Observer {
         static OBSERVER: OnceLock<Observer> = OnceLock::new();
-        OBSERVER.get_or_init(|| Observer { rows: parse(TABLE) })
+        OBSERVER.get_or_init(|| Observer { rows: parse(TABLE_1931) })
+    }
+
+    /// The CIE 1964 10° observer at 1 nm, 360–830 nm (471 rows).
+    pub fn cie1964() -> &'static Observer {
+        static OBSERVER: OnceLock<Observer> = OnceLock::new();
+        OBSERVER.get_or_init(|| Observer { rows: parse(TABLE_1964) })
     }
 
     /// x̄, ȳ, z̄ at a wavelength (nm): linear between whole nanometres, 0 outside 360–830 nm.
@@ -104,6 +140,15 @@ mod tests {
         assert!((y_bar_sum() - 106.856_917).abs() < 1e-6);
         let xy = chromaticity(Observer::cie1931().xyz(|_| 1.0));
         assert!((xy[0] - 0.333_31).abs() < 1e-5 && (xy[1] - 0.333_29).abs() < 1e-5, "{xy:?}");
+    }
+
+    /// Σ of the 10° functions at 1 nm, in CIE 15:2004: 116.648519, 116.661877, 116.673980.
+    #[test]
+    fn the_larger_field_sums_to_the_published_values() {
+        let sums = Observer::cie1964().xyz(|_| 1.0);
+        for (sum, known) in sums.iter().zip([116.648_519, 116.661_877, 116.673_981]) {
+            assert!((sum - known).abs() < 2e-6, "{sums:?}");
+        }
     }
 
     /// ȳ peaks at 1 between 555 and 556 nm by the definition of the photopic observer.

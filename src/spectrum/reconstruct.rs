@@ -14,7 +14,12 @@ pub struct Reconstruction {
 impl Reconstruction {
     /// Prepares for samples at rising wavelengths (nm) under a star's irradiance, W/(m² nm).
     pub fn new(wavelengths_nm: &[f64], irradiance: &Spectrum) -> Self {
-        let rows = Observer::cie1931()
+        Reconstruction::seen_by(Observer::cie1931(), wavelengths_nm, irradiance)
+    }
+
+    /// The same for another observer.
+    pub fn seen_by(observer: &Observer, wavelengths_nm: &[f64], irradiance: &Spectrum) -> Self {
+        let rows = observer
             .rows(RANGE.0 as usize, RANGE.1 as usize)
             .map(|(w, cmf)| (w, cmf.map(|c| LUMINOUS_EFFICACY * irradiance.at(w) * c)))
             .collect();

@@ -10,9 +10,18 @@ pub const DEFAULT_RIDGE: f64 = 1e-7;
 /// 683 · irradiance · observer over the hat function of its wavelength (the piecewise-linear interpolant of
 /// the transfers, end values held), at 1 nm over 380–780 nm. Exact for transfers linear between samples.
 pub fn hat_weights(wavelengths_nm: &[f64], irradiance: &Spectrum) -> Vec<[f64; 3]> {
+    hat_weights_seen_by(Observer::cie1931(), wavelengths_nm, irradiance)
+}
+
+/// The same for another observer.
+pub fn hat_weights_seen_by(
+    observer: &Observer,
+    wavelengths_nm: &[f64],
+    irradiance: &Spectrum,
+) -> Vec<[f64; 3]> {
     let n = wavelengths_nm.len();
     let mut weights = vec![[0.0; 3]; n];
-    for (w, cmf) in Observer::cie1931().rows(RANGE.0 as usize, RANGE.1 as usize) {
+    for (w, cmf) in observer.rows(RANGE.0 as usize, RANGE.1 as usize) {
         let after = wavelengths_nm.partition_point(|&x| x <= w);
         let (left, right) = (after.max(1) - 1, after.min(n - 1));
         let t = if left == right {

@@ -5,8 +5,10 @@ use clap::Args;
 use std::fs;
 use tyndall::commands;
 
-const COMMANDS: [&str; 11] = [
+const COMMANDS: [&str; 13] = [
     "bake",
+    "diff",
+    "recolour",
     "sample",
     "reference",
     "verify",
@@ -37,6 +39,8 @@ fn parse(example: &str) -> Result<(), clap::Error> {
         "bake" => commands::bake::Args::augment_args(named),
         "sample" => commands::sample::Args::augment_args(named),
         "reference" => commands::reference::Args::augment_args(named),
+        "diff" => commands::diff::Args::augment_args(named),
+        "recolour" => commands::recolour::Args::augment_args(named),
         "verify" => commands::verify::Args::augment_args(named),
         "chart" => commands::chart::Args::augment_args(named),
         "colour" => commands::colour::Args::augment_args(named),

@@ -36,6 +36,7 @@ fn table(staging: &Staging) -> Table {
             columns: 2,
             rows: 2,
             slice_order: "row-major".into(),
+            slice_index: "azimuth * 2 + mu_s".into(),
             origin: Origin::TopLeft,
         },
         encoding: Encoding::log(1.0 / 16384.0, 4.5, -17.0),
@@ -47,6 +48,7 @@ fn table(staging: &Staging) -> Table {
             range: atlas.channels[0].samples.range(),
             encoding: None,
         }],
+        containers: Vec::new(),
     }
 }
 
@@ -54,7 +56,7 @@ fn manifest(staging: &Staging) -> Manifest {
     let resolved = json!({"radius_m": 11266.7, "constituents": [{"g": 0.1 + 0.2, "z": 1e-300}], "a": 1.0});
     Manifest {
         schema_version: SCHEMA_VERSION,
-        tool: Tool { name: "tyndall".into(), version: env!("CARGO_PKG_VERSION").into() },
+        tool: Tool::this(),
         preset: Preset { name: "phobos".into(), hash: hash_of(&resolved), resolved },
         settings: json!({"orders": "auto", "shipped_preset": true}),
         wavelengths: Wavelengths { kind: GridKind::Points, nm: vec![440.0, 1.0 / 3.0, f64::MIN_POSITIVE] },
@@ -62,6 +64,7 @@ fn manifest(staging: &Staging) -> Manifest {
             space: "srgb".into(),
             observer: "CIE 1931 2 degrees".into(),
             white: [0.3127, 0.329],
+            adaptation: None,
             matrices: BTreeMap::from([("xyz_to_rgb".into(), vec![vec![3.2404542, -1.5371385, -0.4985314]])]),
         },
         constants: BTreeMap::from([("ground_radius_m".into(), vec![11_266.7])]),
@@ -74,6 +77,7 @@ fn manifest(staging: &Staging) -> Manifest {
         }],
         quality: json!({"orders": 12}),
         warnings: vec!["a spectrum ends at 700 nm".into()],
+        manifest_blake3: String::new(),
     }
 }
 

@@ -24,7 +24,7 @@ impl Colours {
     pub fn new(medium: &Medium, palette: &Palette) -> Self {
         let weights = palette.rgb_weights();
         let one = weighted(&weights, &vec![1.0; weights.len()]);
-        let star_lx = multiply(&palette.space.from_xyz(), palette.star_xyz);
+        let star_lx = multiply(&palette.rgb.from_xyz, palette.star_xyz);
         let mut colours = Colours { weights, one, star_lx, ground_albedo: [0.0; 3] };
         colours.ground_albedo = colours.mean(&medium.ground_albedo);
         colours

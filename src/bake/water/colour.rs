@@ -74,6 +74,6 @@ pub fn fit(
     let weights = fit_weights(&four(&training), &targets, &palette.four_weights, DEFAULT_RIDGE)?;
     let (few, judges) = (four(&held_out), colours(&held_out));
     let error = [&palette.four_weights, &weights].map(|weights| judge(weights, &few, &judges));
-    let rgb: Vec<[f64; 3]> = weights.iter().map(|w| multiply(&palette.space.from_xyz(), *w)).collect();
+    let rgb: Vec<[f64; 3]> = weights.iter().map(|w| multiply(&palette.rgb.from_xyz, *w)).collect();
     Ok(((0..3).map(|c| rgb.iter().map(|w| w[c]).collect()).collect(), error))
 }

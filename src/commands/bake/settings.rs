@@ -3,11 +3,13 @@
 use super::super::machine::wavelengths;
 use super::Args;
 use crate::bake::compact::Sizes;
-use crate::bake::settings::{Layout, Settings, Solver};
+use crate::bake::settings::{Layout, Settings, Solver, Storage};
 use crate::bake::water::Waters;
 use crate::error::{Error, Result};
+use crate::export::container::Container;
 use crate::methods::literal::Gather;
 use crate::preset;
+use crate::spectrum::Rgb;
 use crate::table::Elek2010;
 use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
@@ -25,13 +27,14 @@ pub fn settings(args: &Args) -> Result<Settings> {
         layouts,
         orders: args.orders,
         wavelengths_nm,
-        space: args.colour_space,
+        rgb: Rgb { space: args.colour_space, white: args.white.map(|white| (white, args.adaptation)) },
         solver: if literal {
             Solver::Literal { samples: 30, gather: Gather::PerPoint }
         } else {
             Solver::Moments
         },
         spectral: args.spectral,
+        storage: storage(args),
         waters,
         ..Settings::default()
     };
@@ -72,6 +75,15 @@ pub fn settings(args: &Args) -> Result<Settings> {
         }
     }
     Ok(settings)
+}
+
+/// Containers besides EXR, each once, in a fixed order.
+fn storage(args: &Args) -> Storage {
+    let mut containers: Vec<Container> =
+        args.formats.iter().copied().filter(|&format| format != Container::Exr).collect();
+    containers.sort();
+    containers.dedup();
+    Storage { containers, column: args.exr_atlas == "column" }
 }
 
 /// The waters to bake; each name is that of its tables, so it can stand only once.

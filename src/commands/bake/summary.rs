@@ -15,6 +15,8 @@ pub struct Done {
     pub warnings: Vec<String>,
     pub quality: Map<String, Value>,
     pub stages: Vec<Stage>,
+    /// It stood there already, and nothing was solved.
+    pub reused: bool,
 }
 
 /// What came of one preset.
@@ -33,6 +35,12 @@ pub struct Worst {
 }
 
 impl Done {
+    /// Of a bake that was looked at and left.
+    pub fn nothing(folder: PathBuf) -> Self {
+        let (warnings, quality, stages) = Default::default();
+        Done { folder, files: 0, bytes: 0, warnings, quality, stages, reused: true }
+    }
+
     /// Largest error of the tables of all layouts against direct integration of their own medium.
     pub fn worst(&self) -> Option<Worst> {
         let mut worst: Option<Worst> = None;
@@ -90,7 +98,10 @@ impl Outcome {
         match &self.result {
             Ok(done) => {
                 let Value::Object(more) = done.json() else { unreachable!("an object was made") };
-                let first = [("preset", json!(self.name)), ("outcome", json!("baked"))];
+                let first = [
+                    ("preset", json!(self.name)),
+                    ("outcome", json!(if done.reused { "reused" } else { "baked" })),
+                ];
                 first.map(|(k, v)| (k.to_string(), v)).into_iter().chain(more).collect()
             }
             Err(error) => json!({ "preset": self.name, "outcome": "failed", "error": error.to_string(),
@@ -122,7 +133,8 @@ pub fn tell(outcomes: &[Outcome], as_json: bool, perf: bool) -> Result<()> {
 }
 
 fn headline(done: &Done) -> String {
-    format!("{}: {} files, {:.1} MB\n", done.folder.display(), done.files, done.bytes as f64 / 1e6)
+    let reused = if done.reused { ", there already" } else { "" };
+    format!("{}: {} files, {:.1} MB{reused}\n", done.folder.display(), done.files, done.bytes as f64 / 1e6)
 }
 
 fn times(stages: &[Stage]) -> String {
@@ -161,8 +173,9 @@ fn row(done: &Done) -> String {
     let balance = done.balance().map_or("-".into(), |b| format!("{:+.3} %", 100.0 * b));
     let megabytes = done.bytes as f64 / 1e6;
     let (files, warnings, folder) = (done.files, done.warnings.len(), done.folder.display());
+    let reused = if done.reused { " (there already)" } else { "" };
     format!(
-        "{files:>5}  {megabytes:>6.1}  {compact:>8}  {elek2010:>8}  {balance:>9}  {warnings:>8}  {folder}"
+        "{files:>5}  {megabytes:>6.1}  {compact:>8}  {elek2010:>8}  {balance:>9}  {warnings:>8}  {folder}{reused}"
     )
 }
 

@@ -1,0 +1,73 @@
+//! `--list` and `--shard`: which of many planets this process bakes.
+
+use super::Args;
+use crate::error::{Error, Result};
+use crate::preset;
+use std::path::Path;
+
+/// A part of a list: every `of`th planet from the `number`th, counted from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    pub number: usize,
+    pub of: usize,
+}
+
+/// `K/N`, K from 1 to N.
+pub fn shard(text: &str) -> std::result::Result<Shard, String> {
+    let numbers = text.split_once('/').and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
+    match numbers {
+        Some((number, of)) if (1..=of).contains(&number) => Ok(Shard { number, of }),
+        _ => Err("expected K/N with K from 1 to N, e.g. 3/8".into()),
+    }
+}
+
+/// Presets that the arguments ask for, by name or path.
+///
+/// # Errors
+/// `File` for a list that cannot be read or names nothing.
+pub fn asked(args: &Args) -> Result<Vec<String>> {
+    let all = match &args.list {
+        Some(file) => read(file)?,
+        None if args.all => preset::shipped_names().map(str::to_string).collect(),
+        None => args.presets.clone(),
+    };
+    let Some(Shard { number, of }) = args.shard else { return Ok(all) };
+    Ok(all.into_iter().skip(number - 1).step_by(of).collect())
+}
+
+/// A preset a line; `#` begins a comment. A path is from the folder of the list where such a file is there, or else
+/// from the current folder, as those of spectra are.
+fn read(file: &Path) -> Result<Vec<String>> {
+    let text = std::fs::read_to_string(file).map_err(|e| Error::reading(file, e))?;
+    let lines = text.lines().map(|line| line.split('#').next().unwrap_or_default().trim());
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let found: Vec<String> = lines
+        .filter(|line| !line.is_empty())
+        .map(|line| match folder.join(line) {
+            beside if !preset::is_shipped(line) && beside.is_file() => beside.to_string_lossy().into_owned(),
+            _ => line.to_string(),
+        })
+        .collect();
+    if found.is_empty() { Err(Error::file(file, "names no planet")) } else { Ok(found) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Shards share nothing and leave nothing out, whatever the length of the list.
+    #[test]
+    fn shards_are_a_partition() {
+        let list: Vec<usize> = (0..17).collect();
+        for of in [1, 3, 17, 20] {
+            let part = |number: usize| list.iter().copied().skip(number - 1).step_by(of);
+            let mut all: Vec<usize> = (1..=of).flat_map(part).collect();
+            all.sort_unstable();
+            assert_eq!(all, list, "{of}");
+        }
+        assert_eq!(shard("3/8"), Ok(Shard { number: 3, of: 8 }));
+        for bad in ["0/8", "9/8", "1", "1/0", "-1/2", "1/2/3"] {
+            assert!(shard(bad).is_err(), "{bad}");
+        }
+    }
+}
