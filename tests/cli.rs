@@ -17,4 +17,5 @@ mod cli {
     mod run;
     mod same_bytes;
     mod stopped;
+    mod windows;
 }

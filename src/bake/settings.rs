@@ -1,9 +1,9 @@
 //! What a bake is asked for, apart from the planet: everything that decides its bytes.
 
-use super::compact::Sizes;
+use super::compact::{Design, Sizes};
 use super::water::Waters;
 use crate::spectrum::ColourSpace;
-use crate::table::Elek2010;
+use crate::table::{Elek2010, Views, Window};
 use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
 use serde_json::{Value, json};
@@ -38,7 +38,9 @@ pub enum Solver {
 pub struct Settings {
     pub layouts: Vec<Layout>,
     pub elek2010_size: [usize; 4],
-    pub compact_sizes: Sizes,
+    pub compact: Design,
+    /// The part of altitudes, suns and views that the tables hold, of both layouts.
+    pub window: Window,
     pub orders: Orders,
     pub wavelengths_nm: Vec<f64>,
     pub space: ColourSpace,
@@ -59,7 +61,8 @@ impl Default for Settings {
         Settings {
             layouts: vec![Layout::Elek2010, Layout::Compact],
             elek2010_size: Elek2010::PAPER_SIZE,
-            compact_sizes: Sizes::default(),
+            compact: Design::default(),
+            window: Window::WHOLE,
             orders: Orders::Converged { tolerance: TOLERANCE },
             wavelengths_nm: crate::spectrum::grid(WAVELENGTHS),
             space: ColourSpace::Srgb,
@@ -82,11 +85,11 @@ impl Settings {
             Solver::Moments => json!("moments"),
             Solver::Literal { samples } => json!({ "literal": { "samples": samples } }),
         };
-        json!({
+        let mut out = json!({
             "layouts": self.layouts.iter().map(|l| l.name()).collect::<Vec<_>>(),
             "elek2010_size": self.elek2010_size,
-            "compact_single_size": self.compact_sizes.single,
-            "compact_multiple_size": self.compact_sizes.multiple,
+            "compact_single_size": self.compact.sizes.single,
+            "compact_multiple_size": self.compact.sizes.multiple,
             "orders": orders,
             "solver": solver,
             "spectral": self.spectral,
@@ -98,6 +101,29 @@ impl Settings {
             },
             "underwater": self.waters.underwater,
             "shipped_preset": self.shipped_preset,
-        })
+        });
+        // What leaves something out stands there only where something is left out.
+        let design = &self.compact;
+        let window = &self.window;
+        let mut add = |key: &str, value: Value| out[key] = value;
+        if design.sizes.depth != Sizes::default().depth {
+            add("compact_transmittance_size", json!(design.sizes.depth));
+        }
+        if let Some(ends) = window.altitudes {
+            add("altitudes_m", json!(ends));
+        }
+        if let Some(ends) = window.suns {
+            add("suns_deg", json!(ends));
+        }
+        if window.views == Views::Sky {
+            add("views", json!("sky"));
+        }
+        if !design.folded.is_empty() {
+            add("folded", json!(design.folded));
+        }
+        if design.without_scatterers {
+            add("without", json!(["scatterers"]));
+        }
+        out
     }
 }

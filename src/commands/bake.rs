@@ -4,6 +4,7 @@ mod jobs;
 mod progress;
 mod settings;
 mod summary;
+pub(super) mod window;
 
 use super::machine::{IsaChoice, orders, share_threads, water_orders};
 use super::memory;
@@ -42,9 +43,27 @@ pub struct Args {
     #[arg(long, value_delimiter = ',', value_enum, default_values_t = [Layout::Elek2010, Layout::Compact])]
     layout: Vec<Layout>,
     /// Texels: altitude x view x sun x azimuth (of elek2010), or LAYOUT=AxBxCxD with LAYOUT elek2010, compact
-    /// (its table of multiple scattering) or compact-single; water=AxBxC: depth x view x sun; repeatable
+    /// (its table of multiple scattering) or compact-single; compact-transmittance=AxB: altitude x view;
+    /// water=AxBxC: depth x view x sun; repeatable. One texel of azimuth is the mean over it
     #[arg(long, value_name = "SIZE")]
     size: Vec<String>,
+    /// Heights of observers that the tables are for, e.g. 2m or 0..12km; those above the air look in from its top
+    /// [default: all]
+    #[arg(long, value_name = "RANGE", value_parser = window::altitudes)]
+    altitudes: Option<Range>,
+    /// Elevations of the sun that the tables are for, degrees, e.g. 35 or -6..60 [default: all]
+    #[arg(long, value_name = "RANGE", allow_hyphen_values = true, value_parser = window::suns)]
+    suns: Option<Range>,
+    /// Rays that the tables hold: all, or those of the sky alone, which do not meet the ground
+    #[arg(long, default_value = "all", value_parser = ["all", "sky"])]
+    views: String,
+    /// Constituents whose light scattered once goes into compact's table of the rest, phase function and all,
+    /// comma-separated, e.g. air
+    #[arg(long, value_delimiter = ',', value_name = "NAME")]
+    fold: Vec<String>,
+    /// A table of compact to leave out
+    #[arg(long, value_name = "TABLE", value_parser = ["scatterers"])]
+    without: Option<String>,
     /// Waters to bake too, comma-separated: names (see `tyndall presets`) or paths of JSON files; or none
     #[arg(long, value_delimiter = ',', default_value = "none", value_name = "WATER")]
     waters: Vec<String>,
@@ -89,6 +108,9 @@ pub struct Args {
     quiet: bool,
 }
 
+/// Lowest and highest of something.
+type Range = [f64; 2];
+
 fn space(name: &str) -> std::result::Result<ColourSpace, String> {
     let all = ColourSpace::ALL;
     let names: Vec<&str> = all.iter().map(|s| s.name()).collect();
@@ -99,7 +121,7 @@ fn space(name: &str) -> std::result::Result<ColourSpace, String> {
 /// then its own where there is one preset, and else has the highest exit code of those that failed.
 pub fn run(args: &Args) -> Result<()> {
     args.isa.apply()?;
-    let settings = settings::settings(args)?;
+    let (settings, sized) = settings::settings(args)?;
     let asked = asked(args);
     let planets: Vec<Result<Planet>> = asked.iter().map(|p| preset::load(p, &args.set)).collect();
     refuse_shared_folders(&asked, &planets)?;
@@ -108,7 +130,8 @@ pub fn run(args: &Args) -> Result<()> {
     if asked.len() > 1 {
         planets.iter().filter_map(|p| p.as_ref().err()).for_each(|e| progress.always(&format!("error: {e}")));
     }
-    let outcomes = bake_all(args, &settings, &progress, &asked, planets);
+    let all = settings::for_planets(&settings, sized, &planets);
+    let outcomes = bake_all(args, &all, &progress, &asked, planets);
     summary::tell(&outcomes, args.json, args.perf)?;
     summary::failure(outcomes)
 }
@@ -133,19 +156,19 @@ fn refuse_shared_folders(asked: &[String], planets: &[Result<Planet>]) -> Result
 /// What came of each preset, in the order asked for.
 fn bake_all(
     args: &Args,
-    settings: &Settings,
+    all: &[Settings],
     progress: &Progress,
     asked: &[String],
     planets: Vec<Result<Planet>>,
 ) -> Vec<Outcome> {
-    let need = |p: &Result<Planet>| p.as_ref().map_or(0, |planet| estimate(planet, settings));
-    let needs: Vec<u64> = planets.iter().map(need).collect();
+    let need = |(p, settings): (&Result<Planet>, &Settings)| p.as_ref().map_or(0, |p| estimate(p, settings));
+    let needs: Vec<u64> = planets.iter().zip(all).map(need).collect();
     let memory = args.memory.unwrap_or_else(default_memory);
     let at_once = if args.perf { 1 } else { rayon::current_num_threads() };
     let answers = run_all(&needs, Bounds { memory, at_once }, |k| {
         let planet = planets[k].as_ref().ok()?;
         let shipped_preset = args.set.is_empty() && preset::is_shipped(&asked[k]);
-        let settings = Settings { shipped_preset, ..settings.clone() };
+        let settings = Settings { shipped_preset, ..all[k].clone() };
         if needs[k] > memory && planets.len() > 1 {
             let (need, bound) = (memory::shown(needs[k]), memory::shown(memory));
             progress

@@ -47,7 +47,7 @@ impl Compact {
         })
     }
 
-    fn mapping(&self) -> &Elek2010 {
+    pub(super) fn mapping(&self) -> &Elek2010 {
         self.multiple.mapping()
     }
 

@@ -4,6 +4,7 @@ use super::volume::{Plane, Volume, enter, sun_at_ground};
 use super::{AerosolPhase, Component, Source, multiply};
 use crate::error::Result;
 use crate::points::Point;
+use crate::table::Elek2010;
 use std::f64::consts::{FRAC_1_PI, PI};
 
 /// The layout of Elek & Kmoch 2010 in memory.
@@ -34,6 +35,10 @@ impl Elek2010Sky {
             rgb: rgb.iter().map(|row| row.iter().map(|v| v / illuminance).collect()).collect(),
             illuminance,
         })
+    }
+
+    pub(super) fn mapping(&self) -> &Elek2010 {
+        self.scattering.mapping()
     }
 
     /// Linear RGB over the star's illuminance, 1/sr (I_F = I_S + I_P e^−t of the paper's §5).

@@ -83,6 +83,15 @@ impl Sky {
         }
     }
 
+    /// What of a view the tables do not hold, as key, value and reason, where they are for a window that it is not in:
+    /// there [`Sky::radiance`] answers with the nearest that they do hold.
+    pub fn outside(&self, point: &Point) -> Option<(&'static str, f64, String)> {
+        match self {
+            Sky::Compact(sky) => volume::outside(point, sky.mapping()),
+            Sky::Elek2010(sky) => volume::outside(point, sky.mapping()),
+        }
+    }
+
     /// The light that arrives at a point of view, one value a channel, 1/sr.
     pub fn radiance(&self, point: &Point, component: Component, phase: AerosolPhase) -> Vec<f64> {
         match self {
