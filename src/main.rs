@@ -2,7 +2,7 @@
 
 use clap::Parser;
 use std::io::Write;
-use tyndall::commands::{bake, colour, presets, reference, sample, verify};
+use tyndall::commands::{bake, colour, plan, presets, reference, sample, verify};
 
 /// Offline baker of lookup tables for planetary atmospheres
 #[derive(Parser)]
@@ -13,6 +13,7 @@ enum Command {
     Sample(sample::Args),
     Reference(reference::Args),
     Verify(verify::Args),
+    Plan(plan::Args),
     Colour(colour::Args),
     Presets(presets::Args),
 }
@@ -36,6 +37,7 @@ fn run(command: Command) -> tyndall::Result<()> {
         Command::Sample(args) => sample::run(&args),
         Command::Reference(args) => reference::run(&args),
         Command::Verify(args) => verify::run(&args),
+        Command::Plan(args) => plan::run(&args),
         Command::Colour(args) => colour::run(&args),
         Command::Presets(args) => presets::run(&args),
     }

@@ -13,13 +13,14 @@ use crate::bake::memory::estimate;
 use crate::bake::settings::{Layout, Settings, TOLERANCE};
 use crate::error::{Error, Result};
 use crate::export::staging::Staging;
+use crate::plan::Plan;
 use crate::preset::{self, Planet};
 use crate::spectrum::ColourSpace;
 use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
 use jobs::{Bounds, run_all};
 use progress::{Progress, stages};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use summary::{Done, Outcome};
 
 /// Bake the lookup tables of planets into folders of EXR files with a bake.json
@@ -174,7 +175,7 @@ fn bake_all(
             progress
                 .say(&format!("{}: needs some {need}, over the bound of {bound}: runs alone", planet.name));
         }
-        let result = one(args, &settings, progress, planet, needs[k]);
+        let result = one(&args.out, &settings, progress, planet, needs[k]);
         if let (Err(error), true) = (&result, planets.len() > 1) {
             progress.always(&format!("error: {}: {error}", planet.name));
         }
@@ -201,9 +202,26 @@ fn default_memory() -> u64 {
     memory::available().map_or(2 << 30, |free| free / 2)
 }
 
+/// Processor seconds of this process so far.
+pub fn processor_seconds() -> f64 {
+    progress::cpu_time().as_secs_f64()
+}
+
+/// Bakes what was planned into a folder of `out`.
+pub fn planned(plan: &Plan, out: &Path, quiet: bool, json: bool) -> Result<()> {
+    let planet = preset::load(&plan.scene.planet, &[])?;
+    let shipped_preset = preset::is_shipped(&plan.scene.planet);
+    let settings = Settings { shipped_preset, ..plan.planned.model.settings(&Settings::default()) };
+    let need = estimate(&planet, &settings);
+    let result = one(out, &settings, &Progress::new(quiet), &planet, need);
+    let outcomes = vec![Outcome { name: planet.name, result }];
+    summary::tell(&outcomes, json, false)?;
+    summary::failure(outcomes)
+}
+
 /// One bake, from planet to folder.
-fn one(args: &Args, settings: &Settings, progress: &Progress, planet: &Planet, need: u64) -> Result<Done> {
-    let folder = args.out.join(&planet.name);
+fn one(out: &Path, settings: &Settings, progress: &Progress, planet: &Planet, need: u64) -> Result<Done> {
+    let folder = out.join(&planet.name);
     let staging = Staging::begin(&folder)?;
     let about = format!(", in some {}", memory::shown(need));
     let mut clock = progress.begin(&planet.name, stages(settings), &about);

@@ -5,6 +5,7 @@ pub mod colour;
 mod colour_input;
 mod machine;
 mod memory;
+pub mod plan;
 pub mod presets;
 mod presets_colour;
 mod presets_show;

@@ -2,7 +2,7 @@
 
 use crate::medium::Medium;
 use crate::points::Point;
-use crate::preset::{Metric, Planet, Scene, Tolerance};
+use crate::preset::{Metric, Scene, Tolerance};
 use crate::quality::{Distribution, Scope, colour_error};
 use crate::sky::{Component, Sky};
 use crate::spectrum::{ColourSpace, Reconstruction, delta_e_2000_scaled, multiply};
@@ -80,7 +80,6 @@ pub fn scope(scene: &Scene) -> Scope {
 
 /// What truths come from: a medium, the light in it, and colours of its wavelengths.
 pub struct Truth<'a> {
-    pub planet: &'a Planet,
     pub medium: &'a Medium,
     pub solution: &'a Solution,
     pub reconstruction: &'a Reconstruction,

@@ -116,7 +116,7 @@ impl Drop for Clock {
 }
 
 /// Processor time of this process so far, all threads; zero where the system does not tell.
-fn cpu_time() -> Duration {
+pub fn cpu_time() -> Duration {
     #[cfg(target_os = "linux")]
     {
         let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
