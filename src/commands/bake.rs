@@ -11,10 +11,11 @@ use super::memory;
 use crate::bake::bake;
 use crate::bake::memory::estimate;
 use crate::bake::settings::{Layout, Settings, TOLERANCE};
+use crate::bake::water::Waters;
 use crate::error::{Error, Result};
 use crate::export::staging::Staging;
-use crate::plan::Plan;
-use crate::preset::{self, Planet};
+use crate::plan::{Plan, load_waters};
+use crate::preset::{self, Planet, Tolerance};
 use crate::spectrum::ColourSpace;
 use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
@@ -55,6 +56,10 @@ pub struct Args {
     /// Elevations of the sun that the tables are for, degrees, e.g. 35 or -6..60 [default: all]
     #[arg(long, value_name = "RANGE", allow_hyphen_values = true, value_parser = window::suns)]
     suns: Option<Range>,
+    /// Plan: the least tables of compact that keep within this error, e.g. 1% (of RGB) or 1dE (ΔE2000), on 95 % of views
+    /// by day, or of those of --altitudes and --suns
+    #[arg(long, value_name = "ERROR", value_parser = window::tolerance, conflicts_with_all = ["size", "fold", "without", "layout", "orders", "wavelengths"])]
+    tolerance: Option<Tolerance>,
     /// Rays that the tables hold: all, or those of the sky alone, which do not meet the ground
     #[arg(long, default_value = "all", value_parser = ["all", "sky"])]
     views: String,
@@ -68,6 +73,10 @@ pub struct Args {
     /// Waters to bake too, comma-separated: names (see `tyndall presets`) or paths of JSON files; or none
     #[arg(long, value_delimiter = ',', default_value = "none", value_name = "WATER")]
     waters: Vec<String>,
+    /// Largest depth that the tables of each water hold, m, comma-separated in the order of --waters [default: the
+    /// preset's]
+    #[arg(long, value_delimiter = ',', value_name = "M")]
+    water_depths: Vec<f64>,
     /// Tables for observers under water too
     #[arg(long)]
     underwater: bool,
@@ -131,7 +140,14 @@ pub fn run(args: &Args) -> Result<()> {
     if asked.len() > 1 {
         planets.iter().filter_map(|p| p.as_ref().err()).for_each(|e| progress.always(&format!("error: {e}")));
     }
-    let all = settings::for_planets(&settings, sized, &planets);
+    let mut all = settings::for_planets(&settings, sized, &planets);
+    if let Some(tolerance) = args.tolerance {
+        for (planet, settings) in planets.iter().zip(&mut all) {
+            if let Ok(planet) = planet {
+                *settings = settings::planned(args, planet, settings, tolerance, &progress)?;
+            }
+        }
+    }
     let outcomes = bake_all(args, &all, &progress, &asked, planets);
     summary::tell(&outcomes, args.json, args.perf)?;
     summary::failure(outcomes)
@@ -211,7 +227,11 @@ pub fn processor_seconds() -> f64 {
 pub fn planned(plan: &Plan, out: &Path, quiet: bool, json: bool) -> Result<()> {
     let planet = preset::load(&plan.scene.planet, &[])?;
     let shipped_preset = preset::is_shipped(&plan.scene.planet);
-    let settings = Settings { shipped_preset, ..plan.planned.model.settings(&Settings::default()) };
+    let mut settings = Settings { shipped_preset, ..plan.planned.model.settings(&Settings::default()) };
+    if let Some(waters) = &plan.waters {
+        let list = load_waters(&plan.scene)?;
+        settings.waters = Waters { list, size: waters.size, orders: waters.orders, underwater: false };
+    }
     let need = estimate(&planet, &settings);
     let result = one(out, &settings, &Progress::new(quiet), &planet, need);
     let outcomes = vec![Outcome { name: planet.name, result }];

@@ -17,10 +17,21 @@ pub const NIGHT: f64 = 1e-9;
 /// Azimuths of a view where only their mean matters.
 const AZIMUTHS: usize = 4;
 
+/// Of observers in the air one in so many looks at the sun: its light on things is looked up too.
+const SUNWARD: usize = 8;
+
+/// What is looked at.
+#[derive(Clone, Debug, PartialEq)]
+enum Look {
+    /// Sky or ground, at a point or at several that differ in azimuth, whose mean light counts.
+    Into(Vec<Point>),
+    /// Sunlight where a point is.
+    Sun(Point),
+}
+
 /// Views and the truth about them.
 pub struct Judge {
-    /// Each a point, or several that differ in azimuth, whose mean light counts.
-    views: Vec<Vec<Point>>,
+    views: Vec<Look>,
     /// XYZ over the star's illuminance, 1/sr.
     truth: Vec<[f64; 3]>,
     space: ColourSpace,
@@ -87,7 +98,14 @@ pub struct Truth<'a> {
 
 impl Truth<'_> {
     /// XYZ over the star's illuminance.
-    fn colour(&self, points: &[Point], illuminance: f64) -> [f64; 3] {
+    fn colour(&self, look: &Look, illuminance: f64) -> [f64; 3] {
+        let points = match look {
+            Look::Into(points) => points,
+            Look::Sun(p) => {
+                let through = self.solution.sun_transmittance(self.medium.ground_radius + p.altitude, p.mu_s);
+                return self.reconstruction.xyz(&through).map(|v| v / illuminance);
+            }
+        };
         let all: Vec<usize> = (0..self.medium.constituents.len()).collect();
         let mut sum = vec![0.0; self.medium.wavelengths_nm.len()];
         for point in points {
@@ -107,16 +125,19 @@ impl Judge {
     /// Views of a scene under a seed, with their truth.
     pub fn new(scene: &Scene, truth: &Truth, count: usize, seed: u32) -> Judge {
         let [ground, top] = [truth.medium.ground_radius, truth.medium.top_radius];
-        let around = |p: Point| -> Vec<Point> {
+        let around = |(k, p): (usize, Point)| -> Look {
+            if k % SUNWARD == SUNWARD - 1 && p.altitude < top - ground {
+                return Look::Sun(p);
+            }
             if scene.azimuth_matters {
-                return vec![p];
+                return Look::Into(vec![p]);
             }
             // Midpoints of even parts of half a turn: cosines of up to seven times the azimuth average to nothing.
             let turn = |j: usize| (j as f64 + 0.5) * PI / AZIMUTHS as f64;
-            (0..AZIMUTHS).map(|j| Point { azimuth_deg: turn(j).to_degrees(), ..p }).collect()
+            Look::Into((0..AZIMUTHS).map(|j| Point { azimuth_deg: turn(j).to_degrees(), ..p }).collect())
         };
-        let points: Vec<Vec<Point>> =
-            scope(scene).views(count, seed, ground, top).into_iter().map(around).collect();
+        let points: Vec<Look> =
+            scope(scene).views(count, seed, ground, top).into_iter().enumerate().map(around).collect();
         let illuminance = truth.reconstruction.sum(|_| 1.0)[1];
         let colours: Vec<[f64; 3]> = points.par_iter().map(|p| truth.colour(p, illuminance)).collect();
         let lit = points.into_iter().zip(colours).filter(|(_, xyz)| xyz[1] > NIGHT);
@@ -131,11 +152,14 @@ impl Judge {
     /// Errors of a sky.
     pub fn errors(&self, sky: &Sky) -> Errors {
         let (to_xyz, from_xyz) = (self.space.to_xyz(), self.space.from_xyz());
-        let one = |(points, truth): (&Vec<Point>, &[f64; 3])| {
+        let one = |(look, truth): (&Look, &[f64; 3])| {
             let mut rgb = [0.0; 3];
-            for point in points {
-                let light = sky.rgb(point, Component::Total);
-                (0..3).for_each(|c| rgb[c] += light[c] / points.len() as f64);
+            match look {
+                Look::Sun(p) => rgb = sky.sunlight(p.altitude, p.mu_s),
+                Look::Into(points) => points.iter().for_each(|point| {
+                    let light = sky.rgb(point, Component::Total);
+                    (0..3).for_each(|c| rgb[c] += light[c] / points.len() as f64);
+                }),
             }
             match self.tolerance.metric {
                 Metric::Relative => colour_error(rgb, multiply(&from_xyz, *truth)),

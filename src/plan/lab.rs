@@ -75,6 +75,14 @@ impl<'a> Lab<'a> {
         Ok(&self.lights[light].medium)
     }
 
+    /// The light of a model, and the colours that suit its window.
+    pub fn lit(&mut self, model: &Model) -> Result<(&Medium, &Solution, Rc<Palette>)> {
+        let light = self.light(model)?;
+        let palette = self.palette(light, &model.window)?;
+        let Light { medium, solution, .. } = &self.lights[light];
+        Ok((medium, solution, palette))
+    }
+
     fn palette(&mut self, light: usize, window: &Window) -> Result<Rc<Palette>> {
         if let Some((_, palette)) = self.lights[light].palettes.iter().find(|p| p.0 == *window) {
             return Ok(palette.clone());

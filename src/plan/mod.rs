@@ -11,10 +11,12 @@ mod model;
 mod moves;
 mod search;
 mod told;
+mod waters;
 
 pub use judge::Errors;
 pub use model::{Cost, Model};
 pub use search::{Omission, Tried};
+pub use waters::{WaterPlan, load as load_waters};
 
 use crate::bake::settings::WAVELENGTHS;
 use crate::error::{Error, Result};
@@ -58,6 +60,7 @@ pub struct Plan {
     pub full: Measured,
     pub planned: Measured,
     pub omissions: Vec<Omission>,
+    pub waters: Option<WaterPlan>,
     /// What the scene asks for and the planned model does not give; none where all holds.
     pub unmet: Vec<String>,
     /// Of all models that were measured, those that nothing beats, by the first set of views.
@@ -112,12 +115,27 @@ pub fn plan(
         search.parts(talk, Some(&over))?;
         tried.clone_from(&search.tried);
     }
+    let water_plan = {
+        let (medium, solution, palette) = lab.lit(&chosen)?;
+        let sky = waters::Sky { planet, medium, solution, palette: &palette };
+        waters::plan(scene, &sky, share, effort.seed, talk)?
+    };
     talk("times");
     let full = measured(&mut lab, &Model::default(), &third, clock)?;
     let planned = measured(&mut lab, &chosen, &third, clock)?;
-    let unmet = unmet(scene, &planned);
+    let unmet = unmet(scene, &planned, water_plan.as_ref());
     let measured = lab.measured;
-    Ok(Plan { scene: scene.clone(), full, planned, omissions, unmet, front: front(&tried), measured, share })
+    Ok(Plan {
+        scene: scene.clone(),
+        full,
+        planned,
+        omissions,
+        waters: water_plan,
+        unmet,
+        front: front(&tried),
+        measured,
+        share,
+    })
 }
 
 /// The share of some views that has to hold so that, but for one case in twenty, the promised share of all views does.
@@ -162,21 +180,23 @@ fn over_budget(scene: &Scene, cost: &Cost) -> Vec<String> {
 }
 
 /// What the scene asks for and a model does not give.
-fn unmet(scene: &Scene, planned: &Measured) -> Vec<String> {
+fn unmet(scene: &Scene, planned: &Measured, waters: Option<&WaterPlan>) -> Vec<String> {
     let tolerance = scene.tolerance;
-    let mut out = over_budget(scene, &planned.cost);
+    let of_waters = waters.map_or(0, |w| w.bytes[1]);
+    let mut out = over_budget(scene, &Cost { bytes: planned.cost.bytes + of_waters, ..planned.cost });
     let seconds = planned.seconds[0] + planned.seconds[1];
     if let Some(most) = scene.budget.bake_s.filter(|most| seconds > *most) {
         out.push(format!("{seconds:.1} s of processor time, over {most}"));
     }
     // The promise is one about shares: on a set of its own size a hundredth of it is chance.
-    if planned.errors.share_within(tolerance.most) < 0.99 * tolerance.share {
-        out.push(format!(
-            "{:.1} % of views within {}, not {:.1} %",
-            100.0 * planned.errors.share_within(tolerance.most),
-            tolerance.text(tolerance.most),
-            100.0 * tolerance.share
-        ));
+    let all = [("views", Some(&planned.errors)), ("views of water", waters.map(|w| &w.errors[1]))];
+    for (what, errors) in all {
+        let Some(share) = errors.map(|e| e.share_within(tolerance.most)) else { continue };
+        if share < 0.99 * tolerance.share {
+            let (found, wanted) = (100.0 * share, 100.0 * tolerance.share);
+            let most = tolerance.text(tolerance.most);
+            out.push(format!("{found:.1} % of {what} within {most}, not {wanted:.1} %"));
+        }
     }
     out
 }

@@ -2,6 +2,7 @@
 
 use super::{Measured, Omission, Plan};
 use crate::quality::digits;
+use crate::transport::slab::WaterOrders;
 use serde_json::{Value, json};
 
 /// An amount of memory for people.
@@ -16,7 +17,37 @@ pub fn bytes(n: usize) -> String {
 impl Plan {
     /// The `tyndall bake` that makes the model.
     pub fn command(&self) -> String {
-        self.planned.model.command(&self.scene.planet)
+        let mut out = self.planned.model.command(&self.scene.planet);
+        if let Some(waters) = &self.waters {
+            let list: Vec<&str> = waters.waters.iter().map(|w| w.0.as_str()).collect();
+            let depths: Vec<String> = waters.waters.iter().map(|w| w.1.to_string()).collect();
+            let [depth, view, sun] = waters.size;
+            out += &format!(" --waters {} --water-depths {}", list.join(","), depths.join(","));
+            out += &format!(" --size water={depth}x{view}x{sun}");
+            if let WaterOrders::First(n) = waters.orders {
+                out += &format!(" --water-orders {n}");
+            }
+        }
+        out
+    }
+
+    /// Two lines about the waters, and their errors.
+    fn of_waters(&self) -> String {
+        let (Some(waters), tolerance) = (&self.waters, &self.scene.tolerance) else { return String::new() };
+        let two =
+            |what: &str, of: &dyn Fn(usize) -> String| format!("  {what:34} {:>14} {:>14}\n", of(0), of(1));
+        two("waters: texels", &|k| bytes(waters.bytes[k]))
+            + &two("waters: error, median", &|k| tolerance.text(waters.errors[k].at(0.5)))
+            + &two(&format!("waters: error, {:.1} % within", 100.0 * tolerance.share), &|k| {
+                tolerance.text(waters.errors[k].at(tolerance.share))
+            })
+            + &two("waters: share within tolerance", &|k| {
+                format!("{:.1} %", 100.0 * waters.errors[k].share_within(tolerance.most))
+            })
+    }
+
+    fn all_omissions(&self) -> impl Iterator<Item = &Omission> {
+        self.omissions.iter().chain(self.waters.iter().flat_map(|w| &w.omissions))
     }
 
     /// For people: costs, error, and a line for each omission. Times are of this machine.
@@ -47,9 +78,10 @@ impl Plan {
         out += &columns("share within tolerance", &|m| {
             format!("{:.1} %", 100.0 * m.errors.share_within(tolerance.most))
         });
+        out += &self.of_waters();
         out += &format!(
             "\n  left out ({} models measured; error: that of {:.1} % of the planner's views)\n",
-            self.measured,
+            self.measured + self.waters.as_ref().map_or(0, |w| w.measured),
             100.0 * self.share
         );
         out += &self.lines(true);
@@ -80,7 +112,7 @@ impl Plan {
             let what = format!("{}{sizes}", o.what);
             format!("  {what:52} {saves:>9} {fetches:>9}   {error}\n")
         };
-        self.omissions.iter().filter(of).map(line).collect()
+        self.all_omissions().filter(of).map(line).collect()
     }
 
     /// For machines: the same for the same scene, tool and planet, without times.
@@ -102,6 +134,20 @@ impl Plan {
         let tried = |t: &super::Tried| json!({ "bytes": t.cost.bytes, "fetches": t.cost.fetches, "error": digits(t.error) });
         let timeless = |text: &&String| !text.contains("processor time");
         let unmet: Vec<&String> = self.unmet.iter().filter(timeless).collect();
+        let waters = self.waters.as_ref().map(|w| {
+            let error = |k: usize, share: f64| digits(w.errors[k].at(share));
+            let of = |k: usize| {
+                json!({
+                    "bytes": w.bytes[k],
+                    "views": w.errors[k].count(),
+                    "error_median": error(k, 0.5),
+                    "error_promised_share": error(k, tolerance.share),
+                    "error_worst": error(k, 1.0),
+                    "share_within_tolerance": digits(w.errors[k].share_within(tolerance.most)),
+                })
+            };
+            json!({ "whole": of(0), "planned": of(1) })
+        });
         json!({
             "scene": self.scene.name,
             "planet": self.scene.planet,
@@ -112,7 +158,8 @@ impl Plan {
             "bake": self.command(),
             "whole": of(&self.full),
             "planned": of(&self.planned),
-            "omissions": self.omissions.iter().map(Omission::json).collect::<Vec<_>>(),
+            "waters": waters,
+            "omissions": self.all_omissions().map(Omission::json).collect::<Vec<_>>(),
             "front": self.front.iter().map(tried).collect::<Vec<_>>(),
             "models_measured": self.measured,
         })

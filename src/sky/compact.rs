@@ -104,6 +104,11 @@ impl Compact {
         out
     }
 
+    /// Transmittance towards the sun at the wavelengths.
+    pub(super) fn sunlight(&self, altitude: f64, mu_s: f64) -> Vec<f64> {
+        self.depth.sunlight(altitude, mu_s)[..self.wavelengths_nm.len()].to_vec()
+    }
+
     /// Linear RGB over the star's illuminance.
     pub fn rgb(&self, radiance: &[f64]) -> [f64; 3] {
         multiply(&self.rgb, radiance)

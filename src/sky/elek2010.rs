@@ -63,6 +63,10 @@ impl Elek2010Sky {
         out
     }
 
+    pub(super) fn sunlight(&self, altitude: f64, mu_s: f64) -> [f64; 3] {
+        multiply(&self.rgb, &self.depth.sunlight(altitude, mu_s)[..self.rgb[0].len()])
+    }
+
     fn with_phase(&self, sunlight: [f64; 4], nu: f64, phase: AerosolPhase) -> [f64; 4] {
         match phase {
             AerosolPhase::Isotropic => sunlight.map(|t| t / (4.0 * PI)),

@@ -100,7 +100,15 @@ impl Sky {
         }
     }
 
-    /// The same as linear RGB over the star's illuminance, 1/sr.
+    /// Sunlight that arrives at an observer in the air, on a plane normal to it, linear RGB over the star's illuminance.
+    pub fn sunlight(&self, altitude: f64, mu_s: f64) -> [f64; 3] {
+        match self {
+            Sky::Compact(sky) => sky.rgb(&sky.sunlight(altitude, mu_s)),
+            Sky::Elek2010(sky) => sky.sunlight(altitude, mu_s),
+        }
+    }
+
+    /// The light of [`Sky::radiance`] as linear RGB over the star's illuminance, 1/sr.
     pub fn rgb(&self, point: &Point, component: Component) -> [f64; 3] {
         match self {
             Sky::Compact(sky) => sky.rgb(&sky.radiance(point, component)),

@@ -2,11 +2,13 @@
 
 use super::super::machine::wavelengths;
 use super::Args;
+use super::progress::Progress;
 use super::window::{Sized, fitted};
 use crate::bake::settings::{Layout, Settings, Solver};
 use crate::bake::water::Waters;
 use crate::error::{Error, Result};
-use crate::preset::{self, Planet};
+use crate::plan::{Effort, plan};
+use crate::preset::{self, Planet, Scene, Tolerance};
 use crate::table::{Views, Window};
 use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
@@ -20,6 +22,31 @@ pub fn for_planets(settings: &Settings, sized: Sized, planets: &[Result<Planet>]
         _ => settings.clone(),
     };
     planets.iter().map(of).collect()
+}
+
+/// Settings of the least model for a planet within a tolerance: by day and wherever there is to be, or in the window
+/// that was asked for.
+pub fn planned(
+    args: &Args,
+    planet: &Planet,
+    settings: &Settings,
+    tolerance: Tolerance,
+    progress: &Progress,
+) -> Result<Settings> {
+    let mut scene = Scene::default_of(&planet.name, planet.top_radius - planet.ground_radius, tolerance);
+    scene.altitudes = args.altitudes.unwrap_or(scene.altitudes);
+    scene.suns = args.suns.unwrap_or(scene.suns);
+    if args.views == "sky" {
+        scene.elevations[0] = 0.0;
+    }
+    let mut talk = |text: &str| progress.say(&format!("{}: {text}", planet.name));
+    let plan = plan(planet, &scene, &Effort::default(), &mut talk, &super::processor_seconds)?;
+    if !plan.unmet.is_empty() {
+        let reason = plan.unmet.join("; ");
+        return Err(Error::Check(format!("{}: no model holds: {reason}", planet.name)));
+    }
+    progress.say(&format!("{}: planned: {}", planet.name, plan.command()));
+    Ok(plan.planned.model.settings(settings))
 }
 
 /// The settings that hold for every preset of the run, and which sizes were asked for.
@@ -119,7 +146,19 @@ fn waters(args: &Args) -> Result<Waters> {
     if names.len() != args.waters.len() && args.waters.len() > 1 {
         return Err(Error::Argument("--waters: `none` stands alone".into()));
     }
-    let list = names.iter().map(|w| preset::load_water(w, &[])).collect::<Result<Vec<_>>>()?;
+    let mut list = names.iter().map(|w| preset::load_water(w, &[])).collect::<Result<Vec<_>>>()?;
+    if !args.water_depths.is_empty() && args.water_depths.len() != list.len() {
+        let (given, of) = (args.water_depths.len(), list.len());
+        return Err(Error::Argument(format!("--water-depths: {given} for {of} of --waters")));
+    }
+    for (water, &depth) in list.iter_mut().zip(&args.water_depths) {
+        if !(depth > 0.0 && depth <= water.largest_depth) {
+            let most = water.largest_depth;
+            let reason = format!("{} has depths up to {most} m", water.name);
+            return Err(Error::Argument(format!("--water-depths {depth}: {reason}")));
+        }
+        water.largest_depth = depth;
+    }
     for (k, water) in list.iter().enumerate() {
         if list[..k].iter().any(|other| other.name == water.name) {
             return Err(Error::Argument(format!("--waters: two are named {}", water.name)));

@@ -4,6 +4,7 @@ use crate::bake::compact::{self, Kind};
 use crate::bake::elek2010;
 use crate::bake::settings::Settings;
 use crate::medium::Medium;
+use crate::preset::{Metric, Tolerance};
 use crate::table::{Elek2010, Views};
 
 /// `2m`, `0..200m`, `300m..12km`: metres; the first number has the unit of the last where it has none.
@@ -43,6 +44,19 @@ pub fn suns(text: &str) -> Result<[f64; 2], String> {
         return Err("elevations lie between -90 and 90 degrees".into());
     }
     rising(ends)
+}
+
+/// `1%`, `1dE`: what 95 % of views keep within.
+pub fn tolerance(text: &str) -> Result<Tolerance, String> {
+    let form = || "expected an error of RGB in per cent or one in ΔE2000, e.g. 1% or 1dE".to_string();
+    let number = |t: &str| t.trim().parse::<f64>().ok().filter(|v| *v > 0.0 && *v <= 1000.0);
+    let (metric, most) = if let Some(t) = text.strip_suffix('%') {
+        (Metric::Relative, number(t).ok_or_else(form)? / 100.0)
+    } else {
+        let t = text.strip_suffix("dE").ok_or_else(form)?;
+        (Metric::DeltaE, number(t).ok_or_else(form)?)
+    };
+    Ok(Tolerance { metric, most, share: 0.95 })
 }
 
 fn rising(ends: [f64; 2]) -> Result<[f64; 2], String> {
@@ -103,6 +117,9 @@ mod tests {
         for text in ["", "2 miles", "3..2km", "-1..5", "nan", "0..inf"] {
             assert!(altitudes(text).is_err(), "{text}");
         }
+        assert_eq!(tolerance("2%").unwrap().most, 0.02);
+        assert_eq!(tolerance("0.5dE").unwrap().metric, Metric::DeltaE);
+        assert!(["", "2", "-1%", "0dE", "x%"].iter().all(|t| tolerance(t).is_err()));
         for text in ["", "60..-6", "-91", "high", "0..nan"] {
             assert!(suns(text).is_err(), "{text}");
         }
