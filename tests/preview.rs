@@ -10,4 +10,5 @@ mod preview {
     mod run;
     mod seams;
     mod window;
+    mod windows;
 }

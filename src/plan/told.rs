@@ -110,7 +110,8 @@ impl Plan {
             let saves = if o.saves_bytes == 0 { String::new() } else { signed(o.saves_bytes) };
             let error = o.error.map(|e| self.scene.tolerance.text(e)).join(" to ");
             let what = format!("{}{sizes}", o.what);
-            format!("  {what:52} {saves:>9} {fetches:>9}   {error}\n")
+            let worst = if o.worst_views { ", the worst views too far off" } else { "" };
+            format!("  {what:58} {saves:>9} {fetches:>9}   {error}{worst}\n")
         };
         self.all_omissions().filter(of).map(line).collect()
     }

@@ -158,6 +158,7 @@ pub fn plan(
             saves_bytes: cost(size) as i64 - cost(next) as i64,
             saves_fetches: 0,
             error: [error, after],
+            worst_views: false,
         };
         if after <= most {
             talk(&format!("{}: error {}", omission.what, scene.tolerance.text(after)));
@@ -191,6 +192,7 @@ pub fn plan(
             saves_bytes: 0,
             saves_fetches: 0,
             error: [error, after],
+            worst_views: false,
         });
         if left_out {
             orders = fewer;

@@ -5,11 +5,12 @@ use clap::Args;
 use std::fs;
 use tyndall::commands;
 
-const COMMANDS: [&str; 10] = [
+const COMMANDS: [&str; 11] = [
     "bake",
     "sample",
     "reference",
     "verify",
+    "plan",
     "colour",
     "presets",
     "presets list",
@@ -37,6 +38,7 @@ fn parse(example: &str) -> Result<(), clap::Error> {
         "sample" => commands::sample::Args::augment_args(named),
         "reference" => commands::reference::Args::augment_args(named),
         "verify" => commands::verify::Args::augment_args(named),
+        "plan" => commands::plan::Args::augment_args(named),
         "colour" => commands::colour::Args::augment_args(named),
         "presets" => commands::presets::Args::augment_args(named),
         other => panic!("{example}: {other} is not tested"),

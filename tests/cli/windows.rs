@@ -162,6 +162,10 @@ fn bad_windows_are_refused() {
     refused("--size compact-transmittance=48", "two numbers");
     refused("--suns 30 --spectral", "whole tables");
     refused("--fold air --layout elek2010", "layout compact");
+    refused("--tolerance 1", "per cent or one in");
+    refused("--tolerance 1% --size compact=8x8x8x4", "cannot be used with");
+    refused("--waters sandy --water-depths 1,2", "2 for 1 of --waters");
+    refused("--waters sandy --water-depths 9000", "depths up to");
     let dir = tempfile::tempdir().unwrap();
     let done = ran(small_bake("earth", dir.path(), &["--fold", "ozone"]).output().unwrap());
     assert!(done.code == Some(2) && done.err.contains("there is air, aerosol"), "{}", done.err);
