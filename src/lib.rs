@@ -28,6 +28,7 @@ pub mod isa;
 pub mod lanes;
 pub mod medium;
 pub mod methods;
+pub mod plan;
 pub mod points;
 pub mod preset;
 pub mod quality;

@@ -2,7 +2,7 @@
 
 use clap::Parser;
 use std::io::Write;
-use tyndall::commands::{bake, chart, colour, diff, presets, recolour, reference, sample, verify};
+use tyndall::commands::{bake, chart, colour, diff, plan, presets, recolour, reference, sample, verify};
 
 /// Offline baker of lookup tables for planetary atmospheres
 #[derive(Parser)]
@@ -16,6 +16,7 @@ enum Command {
     Diff(diff::Args),
     Recolour(recolour::Args),
     Chart(chart::Args),
+    Plan(plan::Args),
     Colour(colour::Args),
     Presets(presets::Args),
 }
@@ -42,6 +43,7 @@ fn run(command: Command) -> tyndall::Result<()> {
         Command::Diff(args) => diff::run(&args),
         Command::Recolour(args) => recolour::run(&args),
         Command::Chart(args) => chart::run(&args),
+        Command::Plan(args) => plan::run(&args),
         Command::Colour(args) => colour::run(&args),
         Command::Presets(args) => presets::run(&args),
     }

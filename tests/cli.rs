@@ -24,4 +24,5 @@ mod cli {
     mod run;
     mod same_bytes;
     mod stopped;
+    mod windows;
 }

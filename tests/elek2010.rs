@@ -1,6 +1,6 @@
 //! The paper's parameterisation: round trips, ends, and the places where its formulas lose their digits.
 
-use tyndall::table::Elek2010;
+use tyndall::table::{Bends, Elek2010, SunCurve, Views, Window};
 
 /// Tiny, Earth-like, thick (Titan-like) and huge shells, m.
 const SHELLS: [(f64, f64); 4] = [(400e3, 460e3), (6371e3, 6436e3), (2575e3, 3175e3), (140e6, 140.3e6)];
@@ -177,4 +177,56 @@ fn the_manifest_states_what_is_computed() {
     let (ground, z2) = (constant(0, "r_ground"), constant(0, "Z2"));
     let r = (ground * ground + w * z2 * (w * z2)).sqrt();
     assert!((r / map.radius(7) - 1.0).abs() < 1e-12);
+}
+
+/// A mapping of a part of a shell has texel centres at the window's ends, in whose coordinates they are even; the sky
+/// alone goes from the zenith to the horizon; one texel of a window stands for it, of a point it is the point.
+#[test]
+fn windows_are_pieces_of_the_whole() {
+    let shell = [600e3, 800e3];
+    let curve = SunCurve::Rational { shift: 0.05, width: 0.13 };
+    let bends = Bends { altitude_bend: 1.5, view_power: 1.5, horizon_power: 2.4 };
+    let window = Window { altitudes: Some([5e3, 60e3]), suns: Some([-3.0, 40.0]), views: Views::Sky };
+    let map = Elek2010::windowed(shell, [5, 7, 9, 1], curve, bends, &window).unwrap();
+    let sine = |degrees: f64| libm::sin(degrees.to_radians());
+    let close = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-9;
+    assert!(close(map.altitude(0), 5e3) && close(map.altitude(4), 60e3));
+    assert!(close(map.mu_s(0), sine(-3.0)) && close(map.mu_s(8), sine(40.0)));
+    assert!((0..9).any(|k| map.mu_s(k).abs() < 1e-9), "a texel at the horizon, as in whole tables");
+    for k in 0..5 {
+        let (at, next) = map.altitude_texel(map.altitude(k));
+        assert!((at as f64 + next - k as f64).abs() < 1e-9);
+        for j in 0..7 {
+            let (mu, hits_ground) = map.mu(map.altitude(k), j);
+            let (at, next) = map.view_texel(map.altitude(k), mu, hits_ground);
+            assert!(!hits_ground && (at as f64 + next - j as f64).abs() < 1e-4, "{k} {j}: {at} {next}");
+        }
+    }
+    assert_eq!(map.mu(5e3, 0), (1.0, false));
+    // Beyond the window its end, and the horizon for rays that meet the ground.
+    assert_eq!([map.altitude_texel(1.0), map.altitude_texel(150e3)], [(0, 0.0), (3, 1.0)]);
+    assert_eq!(map.view_texel(30e3, -1.0, true), (5, 1.0));
+    assert_eq!(map.sun_texels(0.99, 1.0).unwrap(), [(7, 1.0), (0, 0.0)]);
+    assert_eq!(map.cos_azimuths().len(), 4);
+
+    let one = Window { altitudes: Some([2.0; 2]), suns: Some([35.0; 2]), views: Views::All };
+    let map = Elek2010::windowed(shell, [1, 6, 1, 3], curve, bends, &one).unwrap();
+    assert!(close(map.altitude(0), 2.0) && close(map.mu_s(0), sine(35.0)));
+    let middle = Elek2010::windowed(shell, [1, 6, 2, 3], curve, bends, &window).unwrap();
+    assert!(middle.altitude(0) > 5e3 && middle.altitude(0) < 60e3);
+    assert!(Elek2010::windowed(shell, [0, 6, 1, 3], curve, bends, &one).is_none());
+    assert!(Elek2010::windowed(shell, [1, 7, 1, 3], curve, bends, &one).is_none());
+}
+
+/// The window of the whole is the whole, to the bit.
+#[test]
+fn a_window_of_all_changes_nothing() {
+    let curve = SunCurve::HalfAngle { centre: 0.7, width: 0.2 };
+    let bends = Bends { altitude_bend: 1.5, view_power: 1.5, horizon_power: 2.4 };
+    let whole = Elek2010::new(600e3, 800e3, [7, 8, 9, 3]).unwrap().with_curves(curve, bends);
+    let map = Elek2010::windowed([600e3, 800e3], [7, 8, 9, 3], curve, bends, &Window::WHOLE).unwrap();
+    assert_eq!((whole.axes(), whole.spans()), (map.axes(), map.spans()));
+    for k in 0..9 {
+        assert_eq!((whole.mu_s(k), whole.altitude(k.min(6))), (map.mu_s(k), map.altitude(k.min(6))));
+    }
 }

@@ -15,4 +15,5 @@ mod preview {
     mod water;
     #[cfg(target_os = "linux")]
     mod window;
+    mod windows;
 }

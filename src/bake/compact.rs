@@ -4,16 +4,19 @@
 //! and has no gamut to leave. τ is the optical depth of the ray without the constituents that absorb only: those
 //! come and go with altitude and would leave their edges in S̄. A look-up is
 //!   I = (1 − e^−τ) (Σ_g p_g(ν) S̄_g + S̄_multiple),   1 − e^−τ = −expm1(−τ).
+//! Constituents may be folded into S̄_multiple, and τ may be that of the whole ray: less to store and to look up.
+
+mod fill;
 
 use super::extinction::{Held, Matter, channels, phase, table};
 use super::palette::Palette;
 use super::tables::{Baked, axes_of, axis, file_order};
 use crate::export::manifest::Encoding;
-use crate::lanes::Lanes;
 use crate::medium::Medium;
-use crate::table::{Bends, Elek2010, SunCurve};
-use crate::transport::fill::{Painter, RayLight, SunPairs, Wanted};
+use crate::table::{Bends, Elek2010, SunCurve, Window};
+use crate::transport::fill::Wanted;
 use crate::transport::solve::Solution;
+use fill::{Over, fill};
 use rayon::prelude::*;
 
 /// Name of the layout and of its folder.
@@ -23,7 +26,7 @@ pub const SINGLE_SIZE: [usize; 4] = [24, 44, 40, 8];
 /// Texels of the multiple-scattering table.
 pub const MULTIPLE_SIZE: [usize; 4] = [16, 44, 40, 10];
 const DEPTH_SIZE: [usize; 2] = [48, 128];
-const IRRADIANCE_SIZE: usize = 128;
+pub const IRRADIANCE_SIZE: usize = 128;
 /// Stored logarithms at or below this stand for darkness.
 pub const FLOOR: f64 = -24.0;
 /// The sun axis of single scattering, closest where the planet's shadow crosses the air, with a texel where it
@@ -40,11 +43,25 @@ const SINGLE_BENDS: Bends = Bends { altitude_bend: 1.5, view_power: 1.5, horizon
 const MULTIPLE_BENDS: Bends = Bends { altitude_bend: 1.5, view_power: 1.5, horizon_power: 1.5 };
 const DEPTH_BENDS: Bends = Bends { altitude_bend: 1.0, view_power: 1.5, horizon_power: 1.5 };
 
-fn mapping(medium: &Medium, size: [usize; 4], sun: SunCurve, bends: Bends) -> Elek2010 {
-    let mapping = Elek2010::new(medium.ground_radius, medium.top_radius, size);
-    let mapping = mapping.expect("sizes are checked with the arguments");
-    let sun = sun.with_texel_at_horizon(mapping.mu_s_min(), size[2]);
-    mapping.with_curves(sun, bends)
+/// A kind of table over altitude and view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Single,
+    Multiple,
+    /// Transmittance, and that without what only absorbs.
+    Depth,
+}
+
+/// The mapping of a kind of table; none where a size or the window is out of range.
+pub fn mapping(medium: &Medium, kind: Kind, size: [usize; 4], window: &Window) -> Option<Elek2010> {
+    let radii = [medium.ground_radius, medium.top_radius];
+    let (sun, bends) = match kind {
+        Kind::Single => (SINGLE_SUN, SINGLE_BENDS),
+        Kind::Multiple => (MULTIPLE_SUN, MULTIPLE_BENDS),
+        Kind::Depth => (MULTIPLE_SUN, DEPTH_BENDS),
+    };
+    let window = if kind == Kind::Depth { window.of_depth() } else { *window };
+    Elek2010::windowed(radii, size, sun, bends, &window)
 }
 
 /// Lists of constituents that share a phase function at every wavelength.
@@ -59,110 +76,149 @@ pub fn groups(medium: &Medium) -> Vec<Vec<usize>> {
     groups
 }
 
-/// Sizes of the single and multiple scattering tables.
+/// The same, with the groups of folded constituents (by name) last; the number of the others comes with them.
+pub fn groups_to_fold(medium: &Medium, folded: &[String]) -> (Vec<Vec<usize>>, usize) {
+    let is_folded = |g: &Vec<usize>| g.iter().any(|&c| folded.contains(&medium.constituents[c].name));
+    let (last, mut all): (Vec<_>, Vec<_>) = groups(medium).into_iter().partition(is_folded);
+    let kept = all.len();
+    all.extend(last);
+    (all, kept)
+}
+
+/// Texels of the tables.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sizes {
     pub single: [usize; 4],
     pub multiple: [usize; 4],
+    /// Of optical depth: altitude, view.
+    pub depth: [usize; 2],
+}
+
+impl From<Sizes> for Design {
+    /// Everything, in these sizes.
+    fn from(sizes: Sizes) -> Self {
+        Design { sizes, ..Design::default() }
+    }
 }
 
 impl Default for Sizes {
     fn default() -> Self {
-        Sizes { single: SINGLE_SIZE, multiple: MULTIPLE_SIZE }
+        Sizes { single: SINGLE_SIZE, multiple: MULTIPLE_SIZE, depth: DEPTH_SIZE }
     }
+}
+
+/// What decides the tables of the layout beside the planet and its light.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Design {
+    pub sizes: Sizes,
+    /// Constituents whose light scattered once has no table of its own but is in that of the rest, phase function and
+    /// all.
+    pub folded: Vec<String>,
+    /// No table of optical depth without what only absorbs: what absorbs is taken for a part of what scatters.
+    pub without_scatterers: bool,
+}
+
+/// A planet and its light, from which the tables of a design are made one by one.
+#[derive(Clone, Copy)]
+pub struct Maker<'a> {
+    pub medium: &'a Medium,
+    pub solution: &'a Solution,
+    pub palette: &'a Palette,
+    pub design: &'a Design,
+    pub window: &'a Window,
 }
 
 /// The tables of the layout. Returns them and the number of multiple-scattering values that were not positive
 /// where there is light.
-pub fn tables(medium: &Medium, solution: &Solution, palette: &Palette, sizes: Sizes) -> (Vec<Baked>, usize) {
-    let groups = groups(medium);
-    let single = mapping(medium, sizes.single, SINGLE_SUN, SINGLE_BENDS);
-    let multiple = mapping(medium, sizes.multiple, MULTIPLE_SUN, MULTIPLE_BENDS);
-    let of_depth = mapping(medium, sizes.multiple, MULTIPLE_SUN, DEPTH_BENDS);
-    let mut out = Vec::new();
-    let singles = fill(solution, palette, &single, &groups, Wanted::Single);
-    for (group, texels) in groups.iter().zip(singles) {
-        let name = format!("single_{}", medium.constituents[group[0]].name);
-        out.push(encode(
-            name,
-            "single scattering without phase function over 1 - T",
-            texels,
-            &single,
-            palette,
-        ));
-    }
-    let mut rest = fill(solution, palette, &multiple, &groups, Wanted::Multiple).into_iter();
-    let first = rest.next().unwrap_or_else(|| vec![[0.0; 4]; multiple.size().iter().product()]);
-    let sum = rest.fold(first, |mut sum, more| {
-        sum.iter_mut().zip(more).for_each(|(s, m)| (0..4).for_each(|k| s[k] += m[k]));
-        sum
-    });
-    let negative = sum.iter().flatten().filter(|v| **v < 0.0).count();
-    out.push(encode("multiple".into(), "light scattered more than once over 1 - T", sum, &multiple, palette));
-    let depth =
-        |which| table(medium, solution, palette, LAYOUT, &of_depth, DEPTH_SIZE, Held::LogOfMean, which);
-    out.push(depth(Matter::All));
-    if medium.constituents.iter().any(|c| !c.scatters()) {
-        out.push(depth(Matter::Scatterers));
-    }
-    out.push(irradiance(solution, palette, &multiple));
-    if !groups.is_empty() {
-        out.push(phase(medium, palette, LAYOUT, &groups));
-    }
+pub fn tables(maker: &Maker) -> (Vec<Baked>, usize) {
+    let mut out = maker.singles();
+    let (multiple, negative) = maker.multiple();
+    out.push(multiple);
+    out.extend(maker.depths());
+    out.push(maker.irradiance());
+    out.extend(maker.phase());
     (out, negative)
 }
 
-/// Mean sources at the four wavelengths, `[group][ray order]`.
-fn fill(
-    solution: &Solution,
-    palette: &Palette,
-    mapping: &Elek2010,
-    groups: &[Vec<usize>],
-    wanted: Wanted,
-) -> Vec<Vec<[f32; 4]>> {
-    let [altitudes, views, suns, azimuths] = mapping.size();
-    let mu_s: Vec<f64> = (0..suns).map(|k| mapping.mu_s(k)).collect();
-    let cosines: Vec<f64> = (0..azimuths).map(|l| mapping.cos_azimuth(l)).collect();
-    let pairs = SunPairs::new(&mu_s, &cosines);
-    let count = groups.len();
-    // `[ray][group][pair]`, so that a ray's texels lie together.
-    let mut texels = vec![[0.0f32; 4]; altitudes * views * count * pairs.len()];
-    for batch in &solution.batches {
-        let four: Vec<(usize, usize)> = (palette.four.iter().enumerate())
-            .filter(|(_, w)| (batch.first..batch.first + batch.optics.count).contains(w))
-            .map(|(k, w)| (k, w - batch.first))
-            .collect();
-        if four.is_empty() || count == 0 {
-            continue;
-        }
-        let painter = Painter::new(solution, batch, groups).together();
-        texels.par_chunks_mut(count * pairs.len()).enumerate().for_each_init(
-            RayLight::default,
-            |light, (ray, out)| {
-                let altitude = mapping.inner_altitude(ray / views);
-                let (mu, hits_ground) = mapping.mu(altitude, ray % views);
-                painter.ray(mapping.radii()[0] + altitude, mu, hits_ground, &pairs, wanted, light);
-                let source = if wanted == Wanted::Single { &light.single } else { &light.multiple };
-                let inverse = inverse_opacity(light.scatterers_depth);
-                for (texel, value) in out.iter_mut().zip(source) {
-                    for &(k, w) in &four {
-                        texel[k] = value[w] * inverse[w];
-                    }
-                }
-            },
-        );
+impl Maker<'_> {
+    fn mapping(&self, kind: Kind, size: [usize; 4]) -> Elek2010 {
+        mapping(self.medium, kind, size, self.window).expect("sizes are checked with the arguments")
     }
-    (0..count)
-        .map(|g| {
-            let part = |ray: &[[f32; 4]]| ray[g * pairs.len()..][..pairs.len()].to_vec();
-            texels.chunks(count * pairs.len()).flat_map(part).collect()
-        })
-        .collect()
-}
 
-/// 1 / (1 − e^−τ), and 0 where there is nothing on the ray.
-fn inverse_opacity(depth: Lanes) -> Lanes {
-    depth.map(|d| if d > 0.0 { (-1.0 / libm::expm1(-f64::from(d))) as f32 } else { 0.0 })
+    /// What a mean source is divided by.
+    fn over(&self) -> Over {
+        let none_absorbs = self.medium.constituents.iter().all(|c| c.scatters());
+        if self.design.without_scatterers || none_absorbs { Over::All } else { Over::Scatterers }
+    }
+
+    /// A table for each group that has one.
+    pub fn singles(&self) -> Vec<Baked> {
+        let (groups, kept) = groups_to_fold(self.medium, &self.design.folded);
+        let mapping = self.mapping(Kind::Single, self.design.sizes.single);
+        let groups = &groups[..kept];
+        let texels = fill(self.solution, self.palette, &mapping, groups, Wanted::Single, (self.over(), 0));
+        let named = groups.iter().zip(texels).map(|(group, texels)| {
+            let name = format!("single_{}", self.medium.constituents[group[0]].name);
+            encode(
+                name,
+                "single scattering without phase function over 1 - T",
+                texels,
+                &mapping,
+                self.palette,
+            )
+        });
+        named.collect()
+    }
+
+    /// The rest, and the number of its values that were not positive where there is light.
+    pub fn multiple(&self) -> (Baked, usize) {
+        let (groups, kept) = groups_to_fold(self.medium, &self.design.folded);
+        let mapping = self.mapping(Kind::Multiple, self.design.sizes.multiple);
+        let folded = groups.len() - kept;
+        let wanted = if folded > 0 { Wanted::Both } else { Wanted::Multiple };
+        let over = (self.over(), folded);
+        let mut rest = fill(self.solution, self.palette, &mapping, &groups, wanted, over).into_iter();
+        let first = rest.next().unwrap_or_else(|| vec![[0.0; 4]; mapping.size().iter().product()]);
+        let sum = rest.fold(first, |mut sum, more| {
+            sum.iter_mut().zip(more).for_each(|(s, m)| (0..4).for_each(|k| s[k] += m[k]));
+            sum
+        });
+        let negative = sum.iter().flatten().filter(|v| **v < 0.0).count();
+        let quantity = "light scattered more than once over 1 - T";
+        let folded: Vec<&str> =
+            groups[kept..].iter().map(|g| self.medium.constituents[g[0]].name.as_str()).collect();
+        let quantity = match folded[..] {
+            [] => quantity.to_string(),
+            _ => format!("light scattered more than once, or once by {}, over 1 - T", folded.join(", ")),
+        };
+        (encode("multiple".into(), &quantity, sum, &mapping, self.palette), negative)
+    }
+
+    /// Optical depth of all and, where some constituents only absorb, of what scatters.
+    pub fn depths(&self) -> Vec<Baked> {
+        let Maker { medium, solution, palette, design, .. } = *self;
+        let [altitudes, views] = design.sizes.depth;
+        let mapping = self.mapping(Kind::Depth, [altitudes, views, 1, 1]);
+        let depth = |which| {
+            table(medium, solution, palette, LAYOUT, &mapping, design.sizes.depth, Held::LogOfMean, which)
+        };
+        let mut out = vec![depth(Matter::All)];
+        if self.over() == Over::Scatterers {
+            out.push(depth(Matter::Scatterers));
+        }
+        out
+    }
+
+    /// Diffuse irradiance of the ground, under all suns: the ground that an observer sees has suns of its own.
+    pub fn irradiance(&self) -> Baked {
+        irradiance(self.solution, self.palette, &self.mapping(Kind::Multiple, self.design.sizes.multiple))
+    }
+
+    /// None where nothing scatters.
+    pub fn phase(&self) -> Option<Baked> {
+        let (groups, _) = groups_to_fold(self.medium, &self.design.folded);
+        (!groups.is_empty()).then(|| phase(self.medium, self.palette, LAYOUT, &groups))
+    }
 }
 
 /// ln S̄ − c, with c the mean logarithm of the brighter half of the table, by day: there halves are finest.
@@ -177,7 +233,8 @@ fn encode(
         .par_iter()
         .map(|t| t.map(|v| if v > 0.0 { libm::log(f64::from(v)) } else { f64::NEG_INFINITY }))
         .collect();
-    let by_day = |n: usize| mapping.mu_s(n / mapping.size()[3] % mapping.size()[2]) > 0.1;
+    let night = mapping.mu_s(mapping.size()[2] - 1) <= 0.1;
+    let by_day = |n: usize| night || mapping.mu_s(n / mapping.size()[3] % mapping.size()[2]) > 0.1;
     let bright = |v: &&f64| v.is_finite();
     let used = palette.four.len();
     let (mut sum, mut n) = (0.0, 0usize);
@@ -205,8 +262,7 @@ fn encode(
 
 /// Diffuse irradiance of the ground over solar irradiance, as a logarithm.
 fn irradiance(solution: &Solution, palette: &Palette, mapping: &Elek2010) -> Baked {
-    let [altitudes, views, _, azimuths] = mapping.size();
-    let long = mapping.resized([altitudes, views, IRRADIANCE_SIZE, azimuths]).expect("a valid size");
+    let long = mapping.unwindowed([1, 2, IRRADIANCE_SIZE, 1]).expect("a valid size");
     let texels = (0..IRRADIANCE_SIZE)
         .map(|k| {
             let light = solution.ground_irradiance(long.mu_s(k));

@@ -29,7 +29,7 @@ pub fn manifest(
         settings: settings.json(),
         wavelengths: Wavelengths { kind: GridKind::Points, nm: settings.wavelengths_nm.clone() },
         colour: colour(palette),
-        constants: constants(planet, palette, medium),
+        constants: constants(planet, palette, medium, &settings.compact.folded),
         waters: Vec::new(),
         tables: files.tables.iter().map(|t| t.entry.clone()).collect(),
         files: Vec::new(),
@@ -68,8 +68,13 @@ pub fn add_waters(manifest: &mut Manifest, waters: &[Water], tables: &WaterTable
     manifest.waters = waters.iter().map(preset).collect();
 }
 
-fn constants(planet: &Planet, palette: &Palette, medium: &Medium) -> BTreeMap<String, Vec<f64>> {
-    let groups = compact::groups(medium);
+fn constants(
+    planet: &Planet,
+    palette: &Palette,
+    medium: &Medium,
+    folded: &[String],
+) -> BTreeMap<String, Vec<f64>> {
+    let (groups, _) = compact::groups_to_fold(medium, folded);
     let is_aerosol = |g: &Vec<usize>| medium.constituents[g[0]].role == Role::Aerosol;
     let row = groups.iter().position(is_aerosol).unwrap_or(0);
     let mut constants = coefficients(&groups, palette, medium);

@@ -10,7 +10,7 @@ use super::tables::{Baked, Channel, axes_of, axis, file_order};
 use crate::export::manifest::{Axis, Encoding};
 use crate::lanes::Lanes;
 use crate::medium::{Medium, Role};
-use crate::table::Elek2010;
+use crate::table::{Bends, Elek2010, SunCurve, Views, Window};
 use crate::transport::Phase;
 use crate::transport::fill::{Painter, RayLight, SunPairs, Wanted};
 use crate::transport::solve::{Batch, Solution};
@@ -40,11 +40,12 @@ pub fn tables(
     solution: &Solution,
     palette: &Palette,
     size: [usize; 4],
+    window: &Window,
 ) -> (Vec<Baked>, Oddities) {
-    let mapping = mapping(medium, size).expect("sizes are checked with the arguments");
+    let mapping = mapping(medium, size, window).expect("sizes are checked with the arguments");
     let texels = fill(medium, solution, palette, &mapping);
     let ambient = ambient(solution, palette, &mapping);
-    finish(medium, solution, palette, &mapping, texels, ambient)
+    finish(medium, solution, palette, (&mapping, window), texels, ambient)
 }
 
 /// Encodes texels (in ray order: gas as RGB and aerosol as luminance, cd/m²) and ambient light (RGB, lx, on an
@@ -53,43 +54,64 @@ pub fn finish(
     medium: &Medium,
     solution: &Solution,
     palette: &Palette,
-    mapping: &Elek2010,
+    (mapping, window): (&Elek2010, &Window),
     texels: Vec<[f32; 4]>,
     ambient: Vec<[f64; 3]>,
 ) -> (Vec<Baked>, Oddities) {
     let (scattering, oddities) = scattering(texels, solution, palette, mapping);
-    let extinction =
-        table(medium, solution, palette, LAYOUT, mapping, EXTINCTION_SIZE, Held::Plain, Matter::All);
+    let (deep, size) = of_depth(medium, window);
+    let extinction = table(medium, solution, palette, LAYOUT, &deep, size, Held::Plain, Matter::All);
     (vec![scattering, extinction, irradiance(ambient, mapping)], oddities)
 }
 
-/// The mapping for a medium; none where a size is out of range.
-pub fn mapping(medium: &Medium, size: [usize; 4]) -> Option<Elek2010> {
-    Elek2010::new(medium.ground_radius, medium.top_radius, size)
+/// The mapping for a medium; none where a size or the window is out of range.
+pub fn mapping(medium: &Medium, size: [usize; 4], window: &Window) -> Option<Elek2010> {
+    let radii = [medium.ground_radius, medium.top_radius];
+    Elek2010::windowed(radii, size, SunCurve::Paper, Bends::PAPER, window)
+}
+
+/// Mapping and size of the extinction texture, as close in a window as without.
+fn of_depth(medium: &Medium, window: &Window) -> (Elek2010, [usize; 2]) {
+    let [altitudes, views] = EXTINCTION_SIZE;
+    let views = if window.views == Views::All { views } else { views / 2 };
+    let mapping = mapping(medium, [1, views, 1, 1], &window.of_depth()).expect("a valid size");
+    let altitudes = mapping.spans()[0].texels(altitudes);
+    (mapping, [altitudes, views])
 }
 
 /// Per texel, in ray order: gas in RGB (cd/m²) and aerosol luminance (cd/m²).
 fn fill(medium: &Medium, solution: &Solution, palette: &Palette, mapping: &Elek2010) -> Vec<[f32; 4]> {
     let [altitudes, views, suns, azimuths] = mapping.size();
     let mu_s: Vec<f64> = (0..suns).map(|k| mapping.mu_s(k)).collect();
-    let cosines: Vec<f64> = (0..azimuths).map(|l| mapping.cos_azimuth(l)).collect();
+    let cosines = mapping.cos_azimuths();
     let pairs = SunPairs::new(&mu_s, &cosines);
+    // Texels that one pair each is found for, or, where the azimuth is averaged out, several.
+    let (each, kept) = (cosines.len() / azimuths, suns * azimuths);
     let scatterers: Vec<usize> =
         (0..medium.constituents.len()).filter(|&c| medium.constituents[c].scatters()).collect();
     let groups: Vec<Vec<usize>> = scatterers.iter().map(|&c| vec![c]).collect();
-    let mut texels = vec![[0.0f32; 4]; altitudes * views * pairs.len()];
+    let mut texels = vec![[0.0f32; 4]; altitudes * views * kept];
     for batch in &solution.batches {
         let painter = Painter::new(solution, batch, &groups);
         let weights = BatchWeights::new(palette, batch);
         let last = scatterers.iter().map(|&c| (medium.constituents[c].role, &batch.optics.phase[c]));
         let last: Vec<(Role, &Phase)> = last.collect();
-        texels.par_chunks_mut(pairs.len()).enumerate().for_each_init(
-            RayLight::default,
-            |light, (ray, out)| {
+        texels.par_chunks_mut(kept).enumerate().for_each_init(
+            || (RayLight::default(), vec![[0.0f32; 4]; pairs.len()]),
+            |(light, of_pairs), (ray, out)| {
                 let altitude = mapping.altitude(ray / views);
                 let (mu, hits_ground) = mapping.mu(altitude, ray % views);
                 let r = mapping.radius(ray / views);
                 painter.ray(r, mu, hits_ground, &pairs, Wanted::Both, light);
+                if each > 1 {
+                    of_pairs.fill([0.0; 4]);
+                    weights.add(light, &last, mu as f32, &pairs, of_pairs);
+                    for (texel, values) in out.iter_mut().zip(of_pairs.chunks_exact(each)) {
+                        let mean = |c: usize| values.iter().map(|v| v[c]).sum::<f32>() / each as f32;
+                        (0..4).for_each(|c| texel[c] += mean(c));
+                    }
+                    return;
+                }
                 crate::isa::run(
                     #[inline(always)]
                     || weights.add(light, &last, mu as f32, &pairs, out),
@@ -239,8 +261,7 @@ pub(super) fn power_of_two(brightest: f64) -> f64 {
 
 /// Diffuse irradiance of the ground against the sun's height, RGB in lx: TA of Algorithm 1.
 fn ambient(solution: &Solution, palette: &Palette, mapping: &Elek2010) -> Vec<[f64; 3]> {
-    let [altitudes, views, _, azimuths] = mapping.size();
-    let long = mapping.resized([altitudes, views, AMBIENT_SIZE, azimuths]).expect("a valid size");
+    let long = mapping.unwindowed([1, 2, AMBIENT_SIZE, 1]).expect("a valid size");
     let rgb = palette.rgb_weights();
     (0..AMBIENT_SIZE)
         .map(|k| {
@@ -251,8 +272,7 @@ fn ambient(solution: &Solution, palette: &Palette, mapping: &Elek2010) -> Vec<[f
 }
 
 fn irradiance(values: Vec<[f64; 3]>, mapping: &Elek2010) -> Baked {
-    let [altitudes, views, _, azimuths] = mapping.size();
-    let axis_of = mapping.resized([altitudes, views, values.len(), azimuths]).expect("a valid size");
+    let axis_of = mapping.unwindowed([1, 2, values.len(), 1]).expect("a valid size");
     let scale = power_of_two(values.iter().flatten().fold(0.0, |a: f64, &b| a.max(b)));
     let sun: Axis = axis(&axis_of.axes()[2]);
     let channel = |c: &str| Channel::new(c, "diffuse irradiance of the ground, linear", "lx");

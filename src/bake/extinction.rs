@@ -7,7 +7,7 @@ use super::palette::Palette;
 use super::tables::{Baked, Channel, axis};
 use crate::export::manifest::{Axis, Encoding};
 use crate::medium::Medium;
-use crate::table::Elek2010;
+use crate::table::{Elek2010, Views};
 use crate::transport::fill::Painter;
 use crate::transport::solve::Solution;
 use rayon::prelude::*;
@@ -47,7 +47,7 @@ pub fn table(
     matter: Matter,
 ) -> Baked {
     let [altitudes, views] = size;
-    let mapping = mapping.resized([altitudes, views, 2, 2]).expect("a valid size");
+    let mapping = mapping.resized([altitudes, views, 1, 1]).expect("a valid size");
     let mut depths = vec![[0.0f32; 4]; altitudes * views];
     depths
         .par_chunks_mut(views)
@@ -88,10 +88,13 @@ fn row(
     i: usize,
     out: &mut [[f32; 4]],
 ) {
-    let half = out.len() / 2;
+    let (half, halves) = match mapping.views() {
+        Views::All => (out.len() / 2, &[true, false][..]),
+        Views::Sky => (out.len(), &[false][..]),
+    };
     let altitude = if held == Held::Plain { mapping.altitude(i) } else { mapping.inner_altitude(i) };
     let r = mapping.radii()[0] + altitude;
-    for (start, to_ground) in [(0, true), (half, false)] {
+    for (start, &to_ground) in (0..).step_by(half).zip(halves) {
         let mus: Vec<f64> = (start..start + half).map(|j| mapping.mu(altitude, j).0).collect();
         for batch in &solution.batches {
             let painter = Painter::new(solution, batch, &[]);
@@ -125,7 +128,7 @@ pub fn channels(palette: &Palette, quantity: &str, unit: &str) -> Vec<Channel> {
 }
 
 /// Texels of a phase function over √((1 − ν)/2), dense in the forward direction.
-const PHASE_SIZE: usize = 512;
+pub const PHASE_SIZE: usize = 512;
 
 /// Phase functions at the four wavelengths as natural logarithms, a row for each group of constituents.
 pub fn phase(medium: &Medium, palette: &Palette, layout: &str, groups: &[Vec<usize>]) -> Baked {

@@ -59,6 +59,15 @@ impl Files {
         Ok(Files { tables: baked.par_iter().map(encode).collect::<Result<_>>()?, extra: Vec::new() })
     }
 
+    /// Tables as they would be in files, without those: for readers in memory.
+    pub fn unencoded<'a>(baked: impl Iterator<Item = &'a Baked>) -> Files {
+        let one = |b: &Baked| {
+            let atlas = b.atlas();
+            TableFile { entry: b.entry(&atlas, String::new()), atlas, bytes: Vec::new(), others: Vec::new() }
+        };
+        Files { tables: baked.map(one).collect(), extra: Vec::new() }
+    }
+
     /// Tables of a layout by name, as a reader finds them.
     pub fn named(&self, layout: &str) -> BTreeMap<String, Atlas> {
         let of_layout = self.tables.iter().filter(|t| t.entry.layout == layout);

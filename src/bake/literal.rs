@@ -8,6 +8,7 @@ use crate::error::{Error, Result};
 use crate::lanes::{Lanes, WIDTH};
 use crate::medium::Medium;
 use crate::methods::literal;
+use crate::table::Window;
 use crate::transport::solve::{Orders, Solution};
 
 /// The layout's tables. `solution` supplies direct sunlight and optical depth only.
@@ -24,7 +25,7 @@ pub fn tables(
         return Err(Error::Argument("--solver literal sums orders one by one: give --orders N".into()));
     };
     let size = settings.elek2010_size;
-    let mapping = mapping(medium, size).expect("sizes are checked with the arguments");
+    let mapping = mapping(medium, size, &Window::WHOLE).expect("sizes are checked with the arguments");
     let mut texels = vec![[0.0f32; 4]; size.iter().product()];
     let mut ambient = vec![[0.0f64; 3]; size[2]];
     let rgb = palette.rgb_weights();
@@ -47,5 +48,5 @@ pub fn tables(
             }
         }
     }
-    Ok(finish(medium, solution, palette, &mapping, texels, ambient))
+    Ok(finish(medium, solution, palette, (&mapping, &Window::WHOLE), texels, ambient))
 }

@@ -96,7 +96,7 @@ fn texels(medium: &Medium, settings: &Settings) -> Texels {
     let wants = |layout| settings.layouts.contains(&layout);
     let mut air = 0.0;
     if wants(Layout::Compact) {
-        let sizes = settings.compact_sizes;
+        let sizes = settings.compact.sizes;
         air += of(&sizes.multiple) + of(&sizes.single) * groups(medium).len() as f64;
     }
     if wants(Layout::ThreeAtmosphere) {

@@ -1,10 +1,10 @@
 //! From a planet to the bytes of every file: solve, choose colours, fill every layout, encode, report.
 
 pub mod compact;
-mod describe;
+pub(crate) mod describe;
 pub mod elek2010;
-mod extinction;
-mod files;
+pub(crate) mod extinction;
+pub(crate) mod files;
 pub mod inputs;
 mod literal;
 pub mod memory;

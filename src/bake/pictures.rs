@@ -7,6 +7,7 @@ use crate::points::Point;
 use crate::preset::Planet;
 use crate::sky::water::{WaterSky, WaterView};
 use crate::sky::{Component, Sky};
+use crate::table::Window;
 
 const SIZE: usize = 144;
 const COLUMNS: usize = 4;
@@ -19,15 +20,24 @@ const SPACE_SUNS: [f64; 2] = [45.0, -15.0];
 const WATER_DEPTHS: [f64; 4] = [2.0, 4.0, 10.0, 100.0];
 const WATER_SUNS: [f64; 2] = [60.0, 15.0];
 
-/// The picture, and the number of pixels that no display can show.
-pub fn preview(sky: &Sky, planet: &Planet, waters: &[(&str, &WaterSky)]) -> Result<(Vec<u8>, usize)> {
+/// The picture, and the number of pixels that no display can show. Of tables for a window it shows what they hold.
+pub fn preview(
+    sky: &Sky,
+    planet: &Planet,
+    window: &Window,
+    waters: &[(&str, &WaterSky)],
+) -> Result<(Vec<u8>, usize)> {
     let mut panels: Vec<Panel> = Vec::new();
-    for sun in SUNS {
-        let look = |v: [f64; 3]| Some(colour(sky, &point(2.0, v, sun)));
+    let height = planet.top_radius - planet.ground_radius;
+    let [lowest, highest] = window.altitudes.unwrap_or([0.0, f64::INFINITY]);
+    let shown = if lowest < height { suns(window, &SUNS) } else { Vec::new() };
+    for sun in shown {
+        let look = |v: [f64; 3]| Some(colour(sky, &point(lowest.max(2.0).min(highest), v, sun)));
         panels.push(fisheye(SIZE, &format!("SUN {sun:.0}"), Exposure::Auto, look));
     }
-    let distance = 2.2 * planet.ground_radius;
-    for sun in SPACE_SUNS {
+    let distance = (2.2 * planet.ground_radius).min(highest);
+    let shown = if distance > height { suns(window, &SPACE_SUNS) } else { Vec::new() };
+    for sun in shown {
         let look = |v: [f64; 3]| Some(colour(sky, &point(distance, v, sun)));
         let radii = [planet.ground_radius + distance, planet.top_radius];
         panels.push(from_space(SIZE, &format!("SPACE {sun:.0}"), Exposure::Auto, radii, look));
@@ -46,6 +56,15 @@ pub fn preview(sky: &Sky, planet: &Planet, waters: &[(&str, &WaterSky)]) -> Resu
     }
     let errors = panels.iter().map(|p| p.errors).sum();
     Ok((contact_sheet(&panels, COLUMNS)?, errors))
+}
+
+/// Sun elevations of a row of pictures: those given or, of a window's suns, as many from the highest to the lowest.
+fn suns(window: &Window, given: &[f64]) -> Vec<f64> {
+    let Some([low, high]) = window.suns else { return given.to_vec() };
+    let steps = given.len() - 1;
+    let mut suns: Vec<f64> = (0..=steps).map(|k| high + (low - high) * k as f64 / steps as f64).collect();
+    suns.dedup();
+    suns
 }
 
 /// A look in direction `v` (z up, x towards the sun) with the sun at an elevation in degrees.

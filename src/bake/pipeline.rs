@@ -71,7 +71,8 @@ pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -
     let mut warnings = solved.warnings(&quality);
 
     stage("picture");
-    let (picture, errors) = pictures::preview(skies.best(), planet, &skies.named(&settings.waters.list))?;
+    let (picture, errors) =
+        pictures::preview(skies.best(), planet, &settings.window, &skies.named(&settings.waters.list))?;
     if errors > 0 {
         warnings.push(format!("preview.png: {errors} pixels that no display can show (in magenta)"));
     }
@@ -112,6 +113,9 @@ impl<'a> Solved<'a> {
         stage("media");
         let full = planet.medium(&settings.wavelengths_nm);
         full.check().map_err(|reason| Error::Argument(format!("{}: {reason}", planet.name)))?;
+        for name in &settings.compact.folded {
+            check_folded(&full, name)?;
+        }
         let paper = full.similarity();
         let wants = |layout| settings.layouts.contains(&layout);
         stage("solve");
@@ -135,7 +139,7 @@ impl<'a> Solved<'a> {
     /// Two samples of the planet's skies, on which colours are fitted and judged.
     fn sample(&self) -> [skies::Skies; 2] {
         let (medium, light) = self.best();
-        [0.0, 1.0].map(|half| skies::sample(light, medium, half))
+        [0.0, 1.0].map(|half| skies::sample(light, medium, half, &self.settings.window))
     }
 
     fn palette(&self, sample: &[skies::Skies; 2]) -> Result<Palette> {
@@ -151,7 +155,14 @@ impl<'a> Solved<'a> {
         }
         if let (true, Some(light)) = (self.settings.layouts.contains(&Layout::Compact), &self.full_light) {
             stage("compact tables");
-            let (tables, negative) = compact::tables(&self.full, light, palette, self.settings.compact_sizes);
+            let maker = compact::Maker {
+                medium: &self.full,
+                solution: light,
+                palette,
+                design: &self.settings.compact,
+                window: &self.settings.window,
+            };
+            let (tables, negative) = compact::tables(&maker);
             filled.tables.extend(tables);
             filled.counts.insert("compact multiple scattering below 0, set to dark".into(), json!(negative));
         }
@@ -178,11 +189,13 @@ impl<'a> Solved<'a> {
     fn fill_elek2010(&self, light: &Solution, palette: &Palette, filled: &mut Filled) -> Result<()> {
         let (paper, settings) = (&self.paper, self.settings);
         let (tables, oddities) = match settings.solver {
-            Solver::Moments => elek2010::tables(paper, light, palette, settings.elek2010_size),
+            Solver::Moments => {
+                elek2010::tables(paper, light, palette, settings.elek2010_size, &settings.window)
+            }
             Solver::Literal { .. } => super::literal::tables(paper, light, palette, settings)?,
         };
         filled.tables.extend(tables);
-        let groups = compact::groups(&self.full);
+        let (groups, _) = compact::groups_to_fold(&self.full, &settings.compact.folded);
         if !groups.is_empty() {
             filled.tables.push(extinction::phase(&self.full, palette, elek2010::LAYOUT, &groups));
         }
@@ -204,7 +217,8 @@ impl<'a> Solved<'a> {
         files: &Files,
     ) -> Map<String, Value> {
         let mut out = Map::new();
-        let truth = self.full_light.as_ref().map(|light| report::truths(&self.full, light));
+        let truth =
+            self.full_light.as_ref().map(|light| report::truths(&self.full, light, &self.settings.window));
         out.insert("colour".into(), report::colours(palette, truth.as_deref()));
         if let Some(light) = &self.full_light {
             out.insert("solver".into(), report::solver(&self.full, light));
@@ -218,7 +232,7 @@ impl<'a> Solved<'a> {
         }
         if let (Some(light), Some(sky)) = (&self.paper_light, &skies.paper) {
             out.insert("paper_medium_solver".into(), report::solver(&self.paper, light));
-            let own = report::truths(&self.paper, light);
+            let own = report::truths(&self.paper, light, &self.settings.window);
             let own = report::in_rgb(sky, palette, &own, AerosolPhase::Isotropic);
             out.insert("elek2010_against_its_own_medium".into(), own);
             if let Some(truth) = &truth {
@@ -324,6 +338,17 @@ impl Skies {
     fn named<'a>(&'a self, waters: &'a [Water]) -> Vec<(&'a str, &'a WaterSky)> {
         waters.iter().map(|w| w.name.as_str()).zip(&self.waters).collect()
     }
+}
+
+/// What is folded must be there and scatter.
+fn check_folded(medium: &Medium, name: &str) -> Result<()> {
+    let scatterers = medium.constituents.iter().filter(|c| c.scatters()).map(|c| c.name.as_str());
+    let scatterers: Vec<&str> = scatterers.collect();
+    if scatterers.contains(&name) {
+        return Ok(());
+    }
+    let all = scatterers.join(", ");
+    Err(Error::Argument(format!("--fold {name}: nothing of that name scatters here; there is {all}")))
 }
 
 /// A warning where wavelengths lie outside those that colours are made of.

@@ -60,7 +60,7 @@ pub fn recolour(source: &Source, wanted: &Wanted) -> Result<(Manifest, Vec<u8>)>
     new.warnings = planet.warnings.clone();
     new.files.retain(|f| f.file == skies::FILE);
     let sky = Sky::new(source.folder, &new, compact::LAYOUT, source.tables)?;
-    let (picture, errors) = pictures::preview(&sky, &planet, &[])?;
+    let (picture, errors) = pictures::preview(&sky, &planet, &super::settings::window(&old.settings), &[])?;
     if errors > 0 {
         new.warnings.push(format!("preview.png: {errors} pixels that no display can show (in magenta)"));
     }

@@ -3,9 +3,10 @@
 use super::palette::{ColourError, Palette};
 use crate::medium::Medium;
 use crate::points::Point;
-use crate::quality::{Distribution, REGIONS, colour_error, digits, relative_errors, views};
+use crate::quality::{Distribution, REGIONS, Scope, colour_error, digits, relative_errors, views};
 use crate::sky::{AerosolPhase, Component, Sky};
 use crate::spectrum::{delta_e_2000_scaled, multiply};
+use crate::table::Window;
 use crate::transport::balance::balance;
 use crate::transport::solve::{Orders, Solution, worst};
 use crate::transport::view::View;
@@ -23,8 +24,8 @@ pub struct Truth {
     pub views: Vec<(Point, Vec<f64>)>,
 }
 
-/// The truth of a solution at the report's views (total light).
-pub fn truths(medium: &Medium, solution: &Solution) -> Vec<Truth> {
+/// The truth of a solution at the report's views (total light): by region or, for tables of a window, there.
+pub fn truths(medium: &Medium, solution: &Solution, window: &Window) -> Vec<Truth> {
     let all: Vec<usize> = (0..medium.constituents.len()).collect();
     let radiance = |p: &Point| match View::enter(p, medium.ground_radius, medium.top_radius) {
         Some(view) => {
@@ -33,13 +34,16 @@ pub fn truths(medium: &Medium, solution: &Solution) -> Vec<Truth> {
         }
         None => vec![0.0; medium.wavelengths_nm.len()],
     };
-    REGIONS
-        .iter()
-        .map(|region| {
-            let points = views(region, VIEWS, 1, medium.ground_radius, medium.top_radius);
-            Truth { region: region.name, views: points.par_iter().map(|p| (*p, radiance(p))).collect() }
-        })
-        .collect()
+    let [ground, top] = [medium.ground_radius, medium.top_radius];
+    let truth = |region: &'static str, points: Vec<Point>| Truth {
+        region,
+        views: points.par_iter().map(|p| (*p, radiance(p))).collect(),
+    };
+    if *window != Window::WHOLE {
+        let scope = Scope::of_window(window, ground, top);
+        return vec![truth("window", scope.views(REGIONS.len() * VIEWS, 1, ground, top))];
+    }
+    REGIONS.iter().map(|region| truth(region.name, views(region, VIEWS, 1, ground, top))).collect()
 }
 
 /// Errors of the compact layout, by region: relative radiance per wavelength, and as RGB.

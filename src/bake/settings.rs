@@ -1,11 +1,11 @@
 //! What a bake is asked for, apart from the planet: everything that decides its bytes.
 
-use super::compact::Sizes;
+use super::compact::{Design, Sizes};
 use super::water::Waters;
 use crate::export::container::Container;
 use crate::methods::literal::Gather;
 use crate::spectrum::{ColourSpace, Rgb, White};
-use crate::table::Elek2010;
+use crate::table::{Elek2010, Views, Window};
 use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
 use serde_json::{Value, json};
@@ -58,7 +58,9 @@ impl Storage {
 pub struct Settings {
     pub layouts: Vec<Layout>,
     pub elek2010_size: [usize; 4],
-    pub compact_sizes: Sizes,
+    pub compact: Design,
+    /// The part of altitudes, suns and views that the tables hold, of both layouts.
+    pub window: Window,
     pub orders: Orders,
     pub wavelengths_nm: Vec<f64>,
     pub rgb: Rgb,
@@ -80,7 +82,8 @@ impl Default for Settings {
         Settings {
             layouts: vec![Layout::Elek2010, Layout::Compact],
             elek2010_size: Elek2010::PAPER_SIZE,
-            compact_sizes: Sizes::default(),
+            compact: Design::default(),
+            window: Window::WHOLE,
             orders: Orders::Converged { tolerance: TOLERANCE },
             wavelengths_nm: crate::spectrum::grid(WAVELENGTHS),
             rgb: Rgb { space: ColourSpace::Srgb, white: None },
@@ -109,11 +112,11 @@ impl Settings {
                 json!({ "literal": { "samples": samples, "gather": format!("{gather:?}") } })
             }
         };
-        json!({
+        let mut out = json!({
             "layouts": self.layouts.iter().map(|l| l.name()).collect::<Vec<_>>(),
             "elek2010_size": self.elek2010_size,
-            "compact_single_size": self.compact_sizes.single,
-            "compact_multiple_size": self.compact_sizes.multiple,
+            "compact_single_size": self.compact.sizes.single,
+            "compact_multiple_size": self.compact.sizes.multiple,
             "orders": orders,
             "solver": solver,
             "white": white(&self.rgb),
@@ -128,7 +131,30 @@ impl Settings {
             },
             "underwater": self.waters.underwater,
             "shipped_preset": self.shipped_preset,
-        })
+        });
+        // What leaves something out stands there only where something is left out.
+        let design = &self.compact;
+        let window = &self.window;
+        let mut add = |key: &str, value: Value| out[key] = value;
+        if design.sizes.depth != Sizes::default().depth {
+            add("compact_transmittance_size", json!(design.sizes.depth));
+        }
+        if let Some(ends) = window.altitudes {
+            add("altitudes_m", json!(ends));
+        }
+        if let Some(ends) = window.suns {
+            add("suns_deg", json!(ends));
+        }
+        if window.views == Views::Sky {
+            add("views", json!("sky"));
+        }
+        if !design.folded.is_empty() {
+            add("folded", json!(design.folded));
+        }
+        if design.without_scatterers {
+            add("without", json!(["scatterers"]));
+        }
+        out
     }
 }
 
@@ -140,4 +166,14 @@ pub fn white(rgb: &Rgb) -> Value {
         White::Xy(xy) => json!(xy),
     };
     json!({ "from": from, "by": by })
+}
+
+/// The window in the settings of a manifest.
+pub fn window(settings: &Value) -> Window {
+    let ends = |key: &str| {
+        let list = settings[key].as_array()?;
+        Some([list.first()?.as_f64()?, list.get(1)?.as_f64()?])
+    };
+    let views = if settings["views"] == "sky" { Views::Sky } else { Views::All };
+    Window { altitudes: ends("altitudes_m"), suns: ends("suns_deg"), views }
 }

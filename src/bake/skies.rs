@@ -5,6 +5,7 @@ use crate::export::exr::{Spectral, from_exr_bytes, spectral_attributes, spectral
 use crate::export::{Atlas, Samples};
 use crate::lanes::Lanes;
 use crate::medium::Medium;
+use crate::table::{Views, Window};
 use crate::transport::fill::{Painter, RayLight, SunPairs, Wanted};
 use crate::transport::solve::{Batch, Solution, lowest_sun};
 use std::path::Path;
@@ -28,27 +29,46 @@ impl Skies {
 /// A lattice of views: the two halves of a sample take the two `offset`s.
 struct Lattice {
     /// Shares of the shell's height. Eyes are mostly near the ground; the top stands for all of space.
-    altitudes: [f64; 5],
+    altitudes: Vec<f64>,
     /// Cosines of the view below the top, closest at the horizon, where spectra change fastest.
     views: [f64; 7],
+    /// Whether views that meet the ground count.
+    ground: bool,
     /// Cosines of the view at the top, downwards.
     from_space: [f64; 4],
     suns: [f64; 12],
     azimuths: [f64; 3],
 }
 
-fn lattice(medium: &Medium, offset: f64) -> Lattice {
-    let low = 0.75 * lowest_sun(medium);
+/// Least range of suns, degrees: skies of one sun alone are too much alike to fit colours on.
+const LEAST_SUNS: f64 = 6.0;
+
+fn lattice(medium: &Medium, offset: f64, window: &Window) -> Lattice {
+    let least = 0.75 * lowest_sun(medium);
+    let [low, high] = suns(medium, window).map_or([least, 1.0], |ends| ends.map(|mu_s| mu_s.max(least)));
     let sun =
-        |k: usize| low + (1.0 - low) * ((k as f64 + 0.3 + 0.4 * offset) / 12.0) * ((k as f64 + 1.0) / 12.0);
+        |k: usize| low + (high - low) * ((k as f64 + 0.3 + 0.4 * offset) / 12.0) * ((k as f64 + 1.0) / 12.0);
+    let shares = [0.0, 0.002 + 0.002 * offset, 0.04 + 0.02 * offset, 0.2 + 0.1 * offset, 1.0];
+    let ends = window.altitudes_in(medium.height()).map(|a| a / medium.height());
+    let mut altitudes: Vec<f64> = shares.iter().map(|share| share.clamp(ends[0], ends[1])).collect();
+    altitudes.dedup();
     let from_space = [-0.97, -0.75, -0.5, -0.22];
     Lattice {
-        altitudes: [0.0, 0.002 + 0.002 * offset, 0.04 + 0.02 * offset, 0.2 + 0.1 * offset, 1.0],
+        altitudes,
+        ground: window.views == Views::All,
         views: [-0.9, -0.35, -0.04, 0.04, 0.13, 0.35, 0.85].map(|mu: f64| mu + 0.05 * offset),
         from_space: from_space.map(|mu| mu + 0.08 * offset),
         suns: std::array::from_fn(sun),
         azimuths: [-0.85 + 0.2 * offset, 0.15 + 0.2 * offset, 0.93 - 0.2 * offset],
     }
+}
+
+/// Cosines of the lowest and the highest sun of a window that has them, widened where it is narrow.
+fn suns(medium: &Medium, window: &Window) -> Option<[f64; 2]> {
+    let [low, high] = window.suns?;
+    let more = (0.5 * (LEAST_SUNS - (high - low))).max(0.0);
+    let wide = Window { suns: Some([low - more, high + more]), ..*window };
+    wide.suns_in(medium.ground_radius, medium.top_radius)
 }
 
 impl Lattice {
@@ -58,10 +78,11 @@ impl Lattice {
 }
 
 /// Skies of a solved planet; `offset` 0 and 1 give two samples without a common view. Left out are dark spectra
-/// and those that end in darkness (sunlight through so much air that its blue is lost to single precision).
-pub fn sample(solution: &Solution, medium: &Medium, offset: f64) -> Skies {
+/// and those that end in darkness (sunlight through so much air that its blue is lost to single precision). They are
+/// those of a window where tables are for one.
+pub fn sample(solution: &Solution, medium: &Medium, offset: f64, window: &Window) -> Skies {
     const DARK: f64 = 1e-7;
-    let lattice = lattice(medium, offset);
+    let lattice = lattice(medium, offset, window);
     let scatterers: Vec<Vec<usize>> = (0..medium.constituents.len())
         .filter(|&c| medium.constituents[c].scatters())
         .map(|c| vec![c])
@@ -96,11 +117,14 @@ fn batch_sample(
     let pairs = SunPairs::new(&lattice.suns, &lattice.azimuths);
     let mut light = RayLight::default();
     let mut out = Vec::new();
-    for altitude in lattice.altitudes {
+    for &altitude in &lattice.altitudes {
         let r = medium.ground_radius + altitude * medium.height();
         let horizon = -((r - medium.ground_radius) * (r + medium.ground_radius)).max(0.0).sqrt() / r;
         for &mu in lattice.views_at(altitude) {
             let hits_ground = mu < horizon;
+            if hits_ground && !lattice.ground {
+                continue;
+            }
             painter.ray(r, mu, hits_ground, &pairs, Wanted::Both, &mut light);
             let sine = (1.0 - mu * mu).sqrt() as f32;
             for p in 0..pairs.len() {

@@ -20,7 +20,8 @@ pub fn files(
     planet: &Planet,
     settings: &Settings,
 ) -> Result<Vec<(String, String, Vec<u8>)>> {
-    let mapping = mapping(medium, settings.elek2010_size).expect("sizes are checked with the arguments");
+    let mapping = mapping(medium, settings.elek2010_size, &settings.window)
+        .expect("sizes are checked with the arguments");
     let irradiance = planet.star.irradiance.at_all(&medium.wavelengths_nm);
     let mut out = Vec::new();
     for (role, name) in [(Role::Gas, "gas"), (Role::Aerosol, "aerosol")] {

@@ -3,7 +3,7 @@
 use super::three_atmosphere;
 use crate::export::atlas::{Atlas, Samples};
 use crate::export::manifest::{Axis, ChannelInfo, Encoding, Packing, Precision, Table};
-use crate::table::{AxisFormula, Elek2010};
+use crate::table::{AxisFormula, Elek2010, HALVES, WINDOW};
 
 /// A table of up to four channels, texels in the order x, y, z, w with x fastest (z and w share the slices).
 pub struct Baked {
@@ -110,9 +110,24 @@ pub fn axis(formula: &AxisFormula) -> Axis {
     Axis {
         name: formula.name.into(),
         size: formula.size,
-        formula: format!("{}. Inverse: {}", formula.coordinate, formula.inverse),
+        formula: format!("{}. Inverse: {}{}", formula.coordinate, formula.inverse, part(formula)),
         constants: formula.constants.iter().map(|(k, v)| (k.to_string(), *v)).collect(),
         unit: if formula.name == "altitude" { "m".into() } else { "1".into() },
+    }
+}
+
+/// What of the axis the texels hold, in words, where it is not all.
+fn part(formula: &AxisFormula) -> &'static str {
+    let has = |name: &str| formula.constants.iter().any(|c| c.0 == name);
+    if has(HALVES) {
+        return ". The texels hold the second half alone: rays that do not hit the ground";
+    }
+    match (has(WINDOW[0]), formula.size) {
+        (false, _) => "",
+        (true, 1) => ". The one texel stands for coordinates from window_low to window_high",
+        (true, _) => {
+            ". The texels hold a part: texel i of n has the coordinate window_low + (window_high - window_low) i / (n - 1)"
+        }
     }
 }
 

@@ -35,7 +35,7 @@ pub struct Case {
 fn small() -> Settings {
     Settings {
         elek2010_size: [12, 48, 24, 6],
-        compact_sizes: Sizes { single: [10, 20, 20, 4], multiple: [8, 20, 20, 6] },
+        compact: Sizes { single: [10, 20, 20, 4], multiple: [8, 20, 20, 6], ..Sizes::default() }.into(),
         ..Settings::default()
     }
 }
@@ -104,7 +104,7 @@ pub fn cases() -> Result<Vec<Case>> {
     setting("81 wavelengths", &|s| s.wavelengths_nm = grid(81))?;
     let with = |axis: usize| {
         move |s: &mut Settings| {
-            for size in [&mut s.elek2010_size, &mut s.compact_sizes.single, &mut s.compact_sizes.multiple] {
+            for size in [&mut s.elek2010_size, &mut s.compact.sizes.single, &mut s.compact.sizes.multiple] {
                 size[axis] = 2;
             }
         }

@@ -7,23 +7,26 @@ mod list;
 mod progress;
 mod settings;
 mod summary;
+pub(super) mod window;
 
 use super::machine::{IsaChoice, orders, share_threads, water_orders};
 use super::memory;
 use crate::bake::bake;
 use crate::bake::memory::estimate;
 use crate::bake::settings::{Layout, Settings, TOLERANCE};
+use crate::bake::water::Waters;
 use crate::error::{Error, Result};
 use crate::export::claim::Claim;
 use crate::export::container::Container;
 use crate::export::staging::Staging;
-use crate::preset::{self, Planet};
+use crate::plan::{Plan, load_waters};
+use crate::preset::{self, Planet, Tolerance};
 use crate::spectrum::{Adaptation, ColourSpace, White};
 use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
 use jobs::{Bounds, run_all};
 use progress::{Progress, stages};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use summary::{Done, Outcome};
 
 /// Bake the lookup tables of planets into folders of EXR files with a bake.json
@@ -61,12 +64,38 @@ pub struct Args {
     #[arg(long, value_delimiter = ',', value_enum, default_values_t = [Layout::Elek2010, Layout::Compact])]
     layout: Vec<Layout>,
     /// Texels: altitude x view x sun x azimuth (of elek2010), or LAYOUT=AxBxCxD with LAYOUT elek2010, compact
-    /// (its table of multiple scattering) or compact-single; water=AxBxC: depth x view x sun; repeatable
+    /// (its table of multiple scattering) or compact-single; compact-transmittance=AxB: altitude x view;
+    /// water=AxBxC: depth x view x sun; repeatable. One texel of azimuth is the mean over it
     #[arg(long, value_name = "SIZE")]
     size: Vec<String>,
+    /// Heights of observers that the tables are for, e.g. 2m or 0..12km; those above the air look in from its top
+    /// [default: all]
+    #[arg(long, value_name = "RANGE", value_parser = window::altitudes)]
+    altitudes: Option<Range>,
+    /// Elevations of the sun that the tables are for, degrees, e.g. 35 or -6..60 [default: all]
+    #[arg(long, value_name = "RANGE", allow_hyphen_values = true, value_parser = window::suns)]
+    suns: Option<Range>,
+    /// Plan: the least tables of compact that keep within this error, e.g. 1% (of RGB) or 1dE (ΔE2000), on 95 % of views
+    /// by day, or of those of --altitudes and --suns
+    #[arg(long, value_name = "ERROR", value_parser = window::tolerance, conflicts_with_all = ["size", "fold", "without", "layout", "orders", "wavelengths"])]
+    tolerance: Option<Tolerance>,
+    /// Rays that the tables hold: all, or those of the sky alone, which do not meet the ground
+    #[arg(long, default_value = "all", value_parser = ["all", "sky"])]
+    views: String,
+    /// Constituents whose light scattered once goes into compact's table of the rest, phase function and all,
+    /// comma-separated, e.g. air
+    #[arg(long, value_delimiter = ',', value_name = "NAME")]
+    fold: Vec<String>,
+    /// A table of compact to leave out
+    #[arg(long, value_name = "TABLE", value_parser = ["scatterers"])]
+    without: Option<String>,
     /// Waters to bake too, comma-separated: names (see `tyndall presets`) or paths of JSON files; or none
     #[arg(long, value_delimiter = ',', default_value = "none", value_name = "WATER")]
     waters: Vec<String>,
+    /// Largest depth that the tables of each water hold, m, comma-separated in the order of --waters [default: the
+    /// preset's]
+    #[arg(long, value_delimiter = ',', value_name = "M")]
+    water_depths: Vec<f64>,
     /// Tables for observers under water too
     #[arg(long)]
     underwater: bool,
@@ -130,6 +159,9 @@ pub struct Args {
     quiet: bool,
 }
 
+/// Lowest and highest of something.
+type Range = [f64; 2];
+
 pub(super) fn space(name: &str) -> std::result::Result<ColourSpace, String> {
     let all = ColourSpace::ALL;
     let names: Vec<&str> = all.iter().map(|s| s.name()).collect();
@@ -140,20 +172,28 @@ pub(super) fn space(name: &str) -> std::result::Result<ColourSpace, String> {
 /// then its own where there is one preset, and else has the highest exit code of those that failed.
 pub fn run(args: &Args) -> Result<()> {
     args.isa.apply()?;
-    let settings = settings::settings(args)?;
+    let (settings, sized) = settings::settings(args)?;
     let asked = list::asked(args)?;
     let planets: Vec<Result<Planet>> = asked.iter().map(|p| preset::load(p, &args.set)).collect();
     refuse_shared_folders(&asked, &planets)?;
     share_threads(args.threads)?;
-    if args.check {
-        return fresh::check(args, &settings, &asked, planets);
-    }
     let names = depfile::names(&planets);
     let progress = Progress::new(args.quiet);
     if asked.len() > 1 {
         planets.iter().filter_map(|p| p.as_ref().err()).for_each(|e| progress.always(&format!("error: {e}")));
     }
-    let outcomes = bake_all(args, &settings, &progress, &asked, planets);
+    let mut all = settings::for_planets(&settings, sized, &planets);
+    if let Some(tolerance) = args.tolerance {
+        for (planet, settings) in planets.iter().zip(&mut all) {
+            if let Ok(planet) = planet {
+                *settings = settings::planned(args, planet, settings, tolerance, &progress)?;
+            }
+        }
+    }
+    if args.check {
+        return fresh::check(args, &all, &asked, planets);
+    }
+    let outcomes = bake_all(args, &all, &progress, &asked, planets);
     summary::tell(&outcomes, args.json, args.perf)?;
     summary::failure(outcomes)?;
     depfile::write(args, &asked, &names)
@@ -180,19 +220,19 @@ fn refuse_shared_folders(asked: &[String], planets: &[Result<Planet>]) -> Result
 /// What came of each preset, in the order asked for.
 fn bake_all(
     args: &Args,
-    settings: &Settings,
+    all: &[Settings],
     progress: &Progress,
     asked: &[String],
     planets: Vec<Result<Planet>>,
 ) -> Vec<Outcome> {
-    let need = |p: &Result<Planet>| p.as_ref().map_or(0, |planet| estimate(planet, settings));
-    let needs: Vec<u64> = planets.iter().map(need).collect();
+    let need = |(p, settings): (&Result<Planet>, &Settings)| p.as_ref().map_or(0, |p| estimate(p, settings));
+    let needs: Vec<u64> = planets.iter().zip(all).map(need).collect();
     let memory = args.memory.unwrap_or_else(default_memory);
     let at_once = if args.perf { 1 } else { rayon::current_num_threads() };
     let bounds = Bounds { memory, at_once };
     let attempt = |k: usize, busy: Busy| {
         let planet = planets[k].as_ref().ok()?;
-        let settings = of_preset(args, settings, &asked[k]);
+        let settings = of_preset(args, &all[k], &asked[k]);
         if needs[k] > memory && planets.len() > 1 {
             let (need, bound) = (memory::shown(needs[k]), memory::shown(memory));
             progress
@@ -266,7 +306,28 @@ fn one(
         progress.end(&planet.name, "is there already; --force bakes it again");
         return Ok(Some(done));
     }
-    let staging = Staging::begin(&folder)?;
+    make(&folder, settings, progress, planet, need).map(Some)
+}
+
+/// Bakes what was planned into a folder of `out`.
+pub fn planned(plan: &Plan, out: &Path, quiet: bool, json: bool) -> Result<()> {
+    let planet = preset::load(&plan.scene.planet, &[])?;
+    let shipped_preset = preset::is_shipped(&plan.scene.planet);
+    let mut settings = Settings { shipped_preset, ..plan.planned.model.settings(&Settings::default()) };
+    if let Some(waters) = &plan.waters {
+        let list = load_waters(&plan.scene)?;
+        settings.waters = Waters { list, size: waters.size, orders: waters.orders, underwater: false };
+    }
+    let need = estimate(&planet, &settings);
+    let result = make(&out.join(&planet.name), &settings, &Progress::new(quiet), &planet, need);
+    let outcomes = vec![Outcome { name: planet.name, result }];
+    summary::tell(&outcomes, json, false)?;
+    summary::failure(outcomes)
+}
+
+/// Solves and writes.
+fn make(folder: &Path, settings: &Settings, progress: &Progress, planet: &Planet, need: u64) -> Result<Done> {
+    let staging = Staging::begin(folder)?;
     let about = format!(", in some {}", memory::shown(need));
     let mut clock = progress.begin(&planet.name, stages(settings), &about);
     let product = bake(planet, settings, &mut |stage| clock.stage(stage))?;
@@ -277,13 +338,13 @@ fn one(
     staging.commit()?;
     product.manifest.warnings.iter().for_each(|w| progress.say(&format!("warning: {}: {w}", planet.name)));
     progress.end(&planet.name, &format!("done in {:.1} s", clock.elapsed().as_secs_f64()));
-    Ok(Some(Done {
-        folder,
+    Ok(Done {
+        folder: folder.to_path_buf(),
         files: product.files.len(),
         bytes: product.files.iter().map(|f| f.1.len()).sum(),
         warnings: product.manifest.warnings,
         quality: product.manifest.quality.as_object().cloned().unwrap_or_default(),
         stages: clock.finish(),
         reused: false,
-    }))
+    })
 }

@@ -7,6 +7,7 @@ pub mod colour_input;
 pub mod diff;
 mod machine;
 mod memory;
+pub mod plan;
 pub mod presets;
 mod presets_colour;
 mod presets_show;

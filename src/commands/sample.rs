@@ -13,7 +13,7 @@ use crate::transport::solve::{Orders, Resolution, Solution};
 use crate::transport::view::View;
 use rayon::prelude::*;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What baked tables answer at any view, from their files alone; with --exact the solver's own answer
 #[derive(clap::Args, Debug)]
@@ -85,6 +85,7 @@ pub fn run(args: &Args) -> Result<()> {
         spectral(&mut out, args, &planet, &points, &nm, &light).map_err(text)?;
     } else {
         let sky = Sky::open(&args.bake, &manifest, &layout(args, &manifest)?)?;
+        refuse_outside(&args.points, &points, &sky)?;
         let ask = |p: &Point| sky.radiance(p, args.component, AerosolPhase::Preset);
         let light: Vec<Vec<f64>> = with_threads(args.threads, || points.iter().map(ask).collect())?;
         if light.iter().flatten().any(|v| !v.is_finite()) {
@@ -106,6 +107,21 @@ pub fn run(args: &Args) -> Result<()> {
         }
     }
     print(&String::from_utf8_lossy(&out))
+}
+
+/// Views that tables of a window do not hold are refused, not answered by the nearest.
+fn refuse_outside(file: &Path, points: &[Point], sky: &Sky) -> Result<()> {
+    for (k, point) in points.iter().enumerate() {
+        if let Some((key, value, reason)) = sky.outside(point) {
+            return Err(Error::Value {
+                file: file.display().to_string(),
+                key: format!("view {}, {key}", k + 1),
+                value: value.to_string(),
+                reason,
+            });
+        }
+    }
+    Ok(())
 }
 
 fn layout(args: &Args, manifest: &Manifest) -> Result<String> {

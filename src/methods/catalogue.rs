@@ -107,7 +107,7 @@ fn elek2010() -> Vec<BakedTables> {
 
 /// Settings with a size of single and of multiple scattering.
 fn compact_settings(single: [usize; 4], multiple: [usize; 4]) -> Settings {
-    Settings { compact_sizes: Sizes { single, multiple }, ..Settings::default() }
+    Settings { compact: Sizes { single, multiple, ..Sizes::default() }.into(), ..Settings::default() }
 }
 
 fn compact() -> Vec<BakedTables> {
@@ -115,8 +115,8 @@ fn compact() -> Vec<BakedTables> {
         family: Family::Compact,
         setting: format!(
             "{} + {}{about}",
-            size_of(settings.compact_sizes.single),
-            size_of(settings.compact_sizes.multiple)
+            size_of(settings.compact.sizes.single),
+            size_of(settings.compact.sizes.multiple)
         ),
         layout: Layout::Compact,
         settings,

@@ -37,6 +37,15 @@ const WATERS: &[(&str, &str)] = &[
     ("jerlov-9c", include_str!("../../presets/waters/jerlov-9c.json")),
 ];
 
+/// Name and JSON text of every shipped scene, in the order they are listed.
+const SCENES: &[(&str, &str)] = &[
+    ("walk", include_str!("../../presets/scenes/walk.json")),
+    ("flight", include_str!("../../presets/scenes/flight.json")),
+    ("orbit", include_str!("../../presets/scenes/orbit.json")),
+    ("rover", include_str!("../../presets/scenes/rover.json")),
+    ("ocean", include_str!("../../presets/scenes/ocean.json")),
+];
+
 /// Name and CSV text of every shipped spectrum.
 const SPECTRA: &[(&str, &str)] = &[
     ("ozone-serdyuchenko-233k", include_str!("../../presets/spectra/ozone-serdyuchenko-233k.csv")),
@@ -86,6 +95,17 @@ pub fn shipped() -> Vec<(&'static str, String)> {
 /// Name and one-line description of every shipped water.
 pub fn shipped_waters() -> Vec<(&'static str, String)> {
     WATERS.iter().map(describe).collect()
+}
+
+/// Name and one-line description of every shipped scene.
+pub fn shipped_scenes() -> Vec<(&'static str, String)> {
+    SCENES.iter().map(describe).collect()
+}
+
+/// File name (as in the source tree) and JSON text of a shipped scene.
+pub fn scene(name: &str) -> Option<(String, &'static str)> {
+    let (_, text) = SCENES.iter().find(|s| s.0 == name)?;
+    Some((format!("presets/scenes/{name}.json"), text))
 }
 
 fn describe((name, text): &(&'static str, &str)) -> (&'static str, String) {

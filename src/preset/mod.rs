@@ -20,17 +20,20 @@ mod read_constituent;
 mod read_phase;
 mod read_planet;
 mod read_profile;
+mod read_scene;
 mod read_spectrum;
 mod read_water;
+mod scene;
 pub mod schema;
 mod water;
 
 pub use coefficient::Coefficient;
 pub use files::{planet_files, water_files};
-pub use library::{shipped, shipped_names, shipped_water_names, shipped_waters};
+pub use library::{shipped, shipped_names, shipped_scenes, shipped_water_names, shipped_waters};
 pub use phase::{KingFactor, PhaseLaw, Stated};
 pub use planet::{Optics, Planet, Star, Substance};
 pub use rayleigh::{AIR_NUMBER_DENSITY, air_cross_section, air_king_factor, air_refractivity};
+pub use scene::{Budget, Metric, Scene, SceneWater, Tolerance};
 pub use water::{Water, WaterLaw, WaterSubstance};
 
 use crate::error::{Error, Result};
@@ -50,6 +53,18 @@ pub fn load(name_or_path: &str, set: &[String]) -> Result<Planet> {
 pub fn load_water(name_or_path: &str, set: &[String]) -> Result<Water> {
     let (file, text) = find_water(name_or_path)?;
     read_water(&file, &text, set)
+}
+
+/// A scene by the name of a shipped one (`walk`) or by the path of a JSON file; as [`load`].
+pub fn load_scene(name_or_path: &str) -> Result<Scene> {
+    let (file, text) = match library::scene(name_or_path) {
+        Some((file, text)) => (file, text.to_string()),
+        None => {
+            let names = library::shipped_scenes().into_iter().map(|s| s.0).collect();
+            find_file(name_or_path, "scene", names)?
+        }
+    };
+    read_scene::scene(&Raw::root(&file, &json::parse(&file, &text)?))
 }
 
 /// Whether a name or path means a water and not a planet: a shipped water, or a file with its mark.
@@ -89,6 +104,19 @@ fn changed(file: &str, text: &str, set: &[String]) -> Result<serde_json::Value> 
         overrides::apply(&mut value, file, assignment)?;
     }
     Ok(value)
+}
+
+/// A file and its text; the nearest of the names where it is neither a path nor one of them.
+fn find_file(name_or_path: &str, what: &str, names: Vec<&str>) -> Result<(String, String)> {
+    let path = Path::new(name_or_path);
+    if path.extension().is_some() || path.components().count() > 1 {
+        let text = std::fs::read_to_string(path).map_err(|e| Error::reading(path, e))?;
+        return Ok((name_or_path.to_string(), text));
+    }
+    let nearest = raw::nearest(name_or_path, names);
+    Err(Error::Argument(format!(
+        "no {what} is called `{name_or_path}`; the nearest is `{nearest}` (a path to a .json file works too)"
+    )))
 }
 
 fn find_water(name_or_path: &str) -> Result<(String, String)> {

@@ -102,6 +102,10 @@ impl<'a> Raw<'a> {
         self.value.as_str().ok_or_else(|| self.refuse("must be a text"))
     }
 
+    pub fn flag(&self) -> Result<bool> {
+        self.value.as_bool().ok_or_else(|| self.refuse("must be true or false"))
+    }
+
     /// A text out of a list, by number; another is refused with the nearest.
     pub fn choice(&self, choices: &[&str]) -> Result<usize> {
         let text = self.text()?;

@@ -1,7 +1,9 @@
 //! How far tables are from the truth: views drawn as a camera would meet them, and distributions of errors.
 
+mod scope;
 mod views;
 
+pub use scope::Scope;
 pub use views::{REGIONS, Region, views};
 
 use serde_json::{Value, json};

@@ -47,7 +47,7 @@ impl Compact {
         })
     }
 
-    fn mapping(&self) -> &Elek2010 {
+    pub(super) fn mapping(&self) -> &Elek2010 {
         self.multiple.mapping()
     }
 
@@ -102,6 +102,11 @@ impl Compact {
             out[k] = albedo * FRAC_1_PI * (direct[k] * mu_s.max(0.0) + diffuse[k]);
         }
         out
+    }
+
+    /// Transmittance towards the sun at the wavelengths.
+    pub(super) fn sunlight(&self, altitude: f64, mu_s: f64) -> Vec<f64> {
+        self.depth.sunlight(altitude, mu_s)[..self.wavelengths_nm.len()].to_vec()
     }
 
     /// Linear RGB over the star's illuminance.

@@ -4,6 +4,7 @@ use super::volume::{Plane, Volume, enter, sun_at_ground};
 use super::{AerosolPhase, Component, Source, multiply};
 use crate::error::Result;
 use crate::points::Point;
+use crate::table::Elek2010;
 use std::f64::consts::{FRAC_1_PI, PI};
 
 /// The layout of Elek & Kmoch 2010 in memory.
@@ -36,6 +37,10 @@ impl Elek2010Sky {
         })
     }
 
+    pub(super) fn mapping(&self) -> &Elek2010 {
+        self.scattering.mapping()
+    }
+
     /// Linear RGB over the star's illuminance, 1/sr (I_F = I_S + I_P e^−t of the paper's §5).
     pub fn radiance(&self, point: &Point, component: Component, phase: AerosolPhase) -> [f64; 3] {
         let Some(place) = enter(point, self.scattering.mapping()) else { return [0.0; 3] };
@@ -56,6 +61,10 @@ impl Elek2010Sky {
             (0..3).for_each(|c| out[c] += ground[c]);
         }
         out
+    }
+
+    pub(super) fn sunlight(&self, altitude: f64, mu_s: f64) -> [f64; 3] {
+        multiply(&self.rgb, &self.depth.sunlight(altitude, mu_s)[..self.rgb[0].len()])
     }
 
     fn with_phase(&self, sunlight: [f64; 4], nu: f64, phase: AerosolPhase) -> [f64; 4] {

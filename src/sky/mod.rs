@@ -87,6 +87,16 @@ impl Sky {
         }
     }
 
+    /// What of a view the tables do not hold, as key, value and reason, where they are for a window that it is not in:
+    /// there [`Sky::radiance`] answers with the nearest that they do hold.
+    pub fn outside(&self, point: &Point) -> Option<(&'static str, f64, String)> {
+        match self {
+            Sky::Compact(sky) => volume::outside(point, sky.mapping()),
+            Sky::Elek2010(sky) => volume::outside(point, sky.mapping()),
+            Sky::ThreeAtmosphere(_) => None,
+        }
+    }
+
     /// The light that arrives at a point of view, one value a channel, 1/sr.
     pub fn radiance(&self, point: &Point, component: Component, phase: AerosolPhase) -> Vec<f64> {
         match self {
@@ -96,7 +106,16 @@ impl Sky {
         }
     }
 
-    /// The same as linear RGB over the star's illuminance, 1/sr.
+    /// Sunlight that arrives at an observer in the air, on a plane normal to it, linear RGB over the star's illuminance.
+    pub fn sunlight(&self, altitude: f64, mu_s: f64) -> [f64; 3] {
+        match self {
+            Sky::Compact(sky) => sky.rgb(&sky.sunlight(altitude, mu_s)),
+            Sky::Elek2010(sky) => sky.sunlight(altitude, mu_s),
+            Sky::ThreeAtmosphere(sky) => sky.sunlight(altitude, mu_s),
+        }
+    }
+
+    /// The light of [`Sky::radiance`] as linear RGB over the star's illuminance, 1/sr.
     pub fn rgb(&self, point: &Point, component: Component) -> [f64; 3] {
         match self {
             Sky::Compact(sky) => sky.rgb(&sky.radiance(point, component)),

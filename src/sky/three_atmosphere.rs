@@ -104,6 +104,15 @@ impl ThreeAtmosphere {
         out.map(|v| v / self.illuminance)
     }
 
+    /// Sunlight on a plane normal to it, linear RGB over the star's illuminance; 0 behind the planet.
+    pub fn sunlight(&self, altitude: f64, mu_s: f64) -> [f64; 3] {
+        if self.mapping.shell().hits_ground(altitude, mu_s) {
+            return [0.0; 3];
+        }
+        let through = self.to_top(altitude, mu_s);
+        std::array::from_fn(|c| through[c] * self.star[c] / self.illuminance)
+    }
+
     fn sky(&self, p: &Place) -> [f64; 3] {
         let [altitude, view, sun, nu] = self.mapping.locate(p.altitude, p.mu, p.mu_s, p.nu, p.hits_ground);
         let [_, views, suns, angles] = self.mapping.size();

@@ -2,7 +2,7 @@
 
 use crate::export::Atlas;
 use crate::export::manifest::{Encoding, Table};
-use crate::table::{Bends, Elek2010, SunCurve, Texel, texel};
+use crate::table::{Bends, Elek2010, HALVES, Span, SunCurve, Texel, Views, WINDOW, texel};
 
 /// Stored samples of up to four channels, x fastest, and how each channel is decoded.
 pub(super) struct Texels {
@@ -71,8 +71,7 @@ fn mapping(table: &Table, size: [usize; 4]) -> Result<Elek2010, String> {
             .copied()
             .ok_or_else(|| format!("{}: axis {} has no {name}", table.name, axis.name))
     };
-    let shell = Elek2010::new(constant(0, "r_ground")?, constant(0, "r_top")?, size)
-        .ok_or_else(|| format!("{}: sizes {size:?} or radii are out of range", table.name))?;
+    let radii = [constant(0, "r_ground")?, constant(0, "r_top")?];
     let sun = table.axes.iter().position(|a| a.name == "sun");
     let number = |name: &str| sun.and_then(|k| constant(k, name).ok());
     let curve = match (number("shift"), number("centre"), number("width")) {
@@ -85,7 +84,15 @@ fn mapping(table: &Table, size: [usize; 4]) -> Result<Elek2010, String> {
         view_power: constant(1, "view_power")?,
         horizon_power: constant(1, "horizon_power")?,
     };
-    Ok(shell.with_curves(curve, bends))
+    let span = |axis: Option<usize>| -> Result<Span, String> {
+        let end = |name: &str| axis.and_then(|k| constant(k, name).ok());
+        let (Some(low), Some(high)) = (end(WINDOW[0]), end(WINDOW[1])) else { return Ok(Span::WHOLE) };
+        Span::new(low, high)
+            .ok_or_else(|| format!("{}: {}, {}: must rise between 0 and 1", table.name, WINDOW[0], WINDOW[1]))
+    };
+    let views = if constant(1, HALVES).is_ok_and(|n| n == 1.0) { Views::Sky } else { Views::All };
+    Elek2010::of_spans(radii, size, curve, bends, [span(Some(0))?, span(sun)?], views)
+        .ok_or_else(|| format!("{}: sizes {size:?} or radii are out of range", table.name))
 }
 
 /// A table over altitude, view, sun and azimuth.
@@ -144,7 +151,7 @@ impl Plane {
         let size = [table.shape.first().copied().unwrap_or(1), table.shape.get(1).copied().unwrap_or(1)];
         let names: Vec<&str> = table.axes.iter().map(|a| a.name.as_str()).collect();
         let mapping = match names[..] {
-            ["altitude", "view"] => Some(mapping(table, [size[0], size[1], 2, 2])?),
+            ["altitude", "view"] => Some(mapping(table, [size[0], size[1], 1, 1])?),
             _ => None,
         };
         let over_length = table.channels.iter().any(|c| c.unit == "1/m");
@@ -160,7 +167,7 @@ impl Plane {
     /// Optical depths of a ray, of a table over altitude and view.
     pub fn depth(&self, altitude: f64, mu: f64, hits_ground: bool) -> [f64; 4] {
         let Some(mapping) = &self.mapping else { return [0.0; 4] };
-        let x = texel(mapping.altitude_coordinate(altitude), self.size[0]);
+        let x = mapping.altitude_texel(altitude);
         let y = mapping.view_texel(altitude, mu, hits_ground);
         let length = if self.over_length { mapping.distance(altitude, mu, hits_ground) } else { 1.0 };
         self.texels.decode(self.texels.interpolate(&[x, y], &[1, self.size[0]])).map(|v| v * length)
@@ -193,6 +200,32 @@ pub fn enter(point: &crate::points::Point, mapping: &Elek2010) -> Option<Place> 
     let mu_s = ((r * point.mu_s + (along - r * point.mu) * nu) / top).clamp(-1.0, 1.0);
     let mu = along / top;
     Some(Place { altitude: height, mu, mu_s, nu, hits_ground: across2 <= ground * ground })
+}
+
+/// What of a view is beyond the tables of a window, as key, value and reason; none where nothing is, or where the ray
+/// misses the air. Angles and altitudes may be rounded as a CSV file has them.
+pub fn outside(point: &crate::points::Point, mapping: &Elek2010) -> Option<(&'static str, f64, String)> {
+    const ROUNDED: f64 = 1e-4;
+    let place = enter(point, mapping)?;
+    let [ground, top] = mapping.radii();
+    let ([low, high], [altitudes, suns]) = (mapping.altitudes(), mapping.spans());
+    let slack = 1e-6 * (top - ground);
+    if altitudes != Span::WHOLE && !(low - slack..=high + slack).contains(&place.altitude) {
+        let above = if altitudes.high == 1.0 { " and above" } else { "" };
+        let reason = format!("these tables hold altitudes from {low:.1} to {high:.1} m{above}");
+        return Some(("altitude_m", point.altitude, reason));
+    }
+    let [low, high] = mapping.suns();
+    if suns != Span::WHOLE && !(low - ROUNDED..=high + ROUNDED).contains(&place.mu_s) {
+        let [from, to] = [low, high].map(|mu| libm::asin(mu.clamp(-1.0, 1.0)).to_degrees());
+        let reason = format!(
+            "these tables hold suns from {low:.4} to {high:.4} ({from:.2} to {to:.2} degrees of elevation)"
+        );
+        return Some(("mu_sun", point.mu_s, reason));
+    }
+    (mapping.views() == Views::Sky && place.hits_ground).then(|| {
+        ("mu_view", point.mu, "this ray meets the ground, and these tables hold the sky alone".to_string())
+    })
 }
 
 /// Cosine of the sun's zenith angle where a ray meets the ground.

@@ -12,6 +12,7 @@
 use super::array::{Texel, texel};
 use super::bends::Bends;
 use super::sun_curve::SunCurve;
+use super::window::{Span, Views, Window};
 
 /// The exponent of the sun axis over its whole length: 2.8 cos δ + 0.8 at cos δ = 1. A longer axis stretches
 /// the paper's nodes evenly; with 2.8 kept, the last step below the zenith would widen to half the day.
@@ -36,7 +37,17 @@ pub struct Elek2010 {
     curve: SunCurve,
     bends: Bends,
     size: [usize; 4],
+    /// The parts of the axes that the texels hold, and the altitudes (m) and sun cosines at their ends.
+    spans: [Span; 2],
+    altitudes: [f64; 2],
+    suns: [f64; 2],
+    views: Views,
 }
+
+/// Names of the constants that say which part of an axis a table holds: the coordinates of its ends, and, where it is 1,
+/// that the view axis has its second half alone.
+pub const WINDOW: [&str; 2] = ["window_low", "window_high"];
+pub const HALVES: &str = "halves";
 
 /// One axis in words, for a manifest: the coordinate 0..1 from the physical quantity, the inverse, and the
 /// constants that both use.
@@ -53,12 +64,17 @@ impl Elek2010 {
     /// The paper's size: altitude, view, sun, azimuth.
     pub const PAPER_SIZE: [usize; 4] = [32, 128, 32, 8];
 
-    /// A mapping for a shell between two radii (m). Sizes are at least 2, that of the view axis, which has two
-    /// halves, even. None where a size or the shell is out of that range.
+    /// A mapping of the whole of a shell between two radii (m). Sizes are at least 2, that of the view axis, which has
+    /// two halves, even. None where a size or the shell is out of that range.
     pub fn new(ground_radius: f64, top_radius: f64, size: [usize; 4]) -> Option<Self> {
-        let valid_shell = ground_radius > 0.0 && top_radius > ground_radius && top_radius.is_finite();
         let valid_size = size.iter().all(|&n| n >= 2) && size[1].is_multiple_of(2);
-        if !valid_shell || !valid_size {
+        if valid_size { Elek2010::whole(ground_radius, top_radius, size) } else { None }
+    }
+
+    /// The same without conditions on the sizes.
+    fn whole(ground_radius: f64, top_radius: f64, size: [usize; 4]) -> Option<Self> {
+        let valid_shell = ground_radius > 0.0 && top_radius > ground_radius && top_radius.is_finite();
+        if !valid_shell {
             return None;
         }
         let height = top_radius - ground_radius;
@@ -73,7 +89,75 @@ impl Elek2010 {
             curve: SunCurve::Paper,
             bends: Bends::PAPER,
             size,
+            spans: [Span::WHOLE; 2],
+            altitudes: [0.0, height],
+            suns: [mu_s_min, 1.0],
+            views: Views::All,
         })
+    }
+
+    /// A mapping of part of a shell, with a sun axis and bent axes of its own. Here the axes of altitude, sun and azimuth
+    /// may have one texel, and the view axis, where it holds the sky alone, any number from 2. None where a size, the
+    /// shell or the window is out of range.
+    pub fn windowed(
+        [ground_radius, top_radius]: [f64; 2],
+        size: [usize; 4],
+        curve: SunCurve,
+        bends: Bends,
+        window: &Window,
+    ) -> Option<Self> {
+        let mut out = Elek2010::whole(ground_radius, top_radius, size)?;
+        out.altitudes = window.altitudes_in(out.height);
+        if let Some(suns) = window.suns_in(ground_radius, top_radius) {
+            out.suns = suns.map(|mu_s| mu_s.clamp(out.mu_s_min, 1.0));
+        }
+        let curve = curve.with_texel_at_horizon(out.suns, size[2]);
+        let out = out.with_curves(curve, bends);
+        let altitude = out.altitudes.map(|a| out.altitude_coordinate(a));
+        let sun = out.suns.map(|mu_s| out.sun_coordinate(mu_s).unwrap_or(0.0));
+        // The ends of whole axes are 0 and 1 whatever rounding says.
+        let ends = |window: Option<[f64; 2]>, [low, high]: [f64; 2]| match window {
+            None => Some(Span::WHOLE),
+            Some(_) => Span::new(low.clamp(0.0, 1.0), high.clamp(0.0, 1.0)),
+        };
+        let spans = [ends(window.altitudes, altitude)?, ends(window.suns, sun)?];
+        out.with_spans(spans, window.views)
+    }
+
+    /// The same mapping for parts of the altitude and sun axes, in coordinates, and of the view axis; conditions as for
+    /// [`Self::windowed`].
+    fn with_spans(self, spans: [Span; 2], views: Views) -> Option<Self> {
+        let [altitudes, rays, suns, azimuths] = self.size;
+        let halves = if views == Views::All { 2 } else { 1 };
+        if altitudes == 0 || suns == 0 || azimuths == 0 || rays < 2 || !rays.is_multiple_of(halves) {
+            return None;
+        }
+        let altitude = |x: f64| if x == 1.0 { self.height } else { self.altitude_at(x) };
+        let sun = |x: f64| if x == 1.0 { 1.0 } else { self.mu_s_at(x) };
+        Some(Elek2010 {
+            altitudes: [spans[0].low, spans[0].high].map(altitude),
+            suns: [spans[1].low, spans[1].high].map(sun),
+            spans,
+            views,
+            ..self
+        })
+    }
+
+    /// The mapping of a table of stated parts; conditions as for [`Self::windowed`].
+    pub fn of_spans(
+        [ground_radius, top_radius]: [f64; 2],
+        size: [usize; 4],
+        curve: SunCurve,
+        bends: Bends,
+        spans: [Span; 2],
+        views: Views,
+    ) -> Option<Self> {
+        Elek2010::whole(ground_radius, top_radius, size)?.with_curves(curve, bends).with_spans(spans, views)
+    }
+
+    /// The same shell and curves for a table of other size that holds all of the axes.
+    pub fn unwindowed(&self, size: [usize; 4]) -> Option<Self> {
+        Elek2010 { size, ..self.clone() }.with_spans([Span::WHOLE; 2], Views::All)
     }
 
     /// The same mapping with another sun axis and bent altitude and view axes.
@@ -83,10 +167,34 @@ impl Elek2010 {
         self
     }
 
-    /// The same shell and curves for a table of other size; conditions as for [`Self::new`].
+    /// The same shell, curves and window for a table of other size; conditions as for [`Self::windowed`].
     pub fn resized(&self, size: [usize; 4]) -> Option<Self> {
-        Elek2010::new(self.ground_radius, self.ground_radius + self.height, size)
-            .map(|m| m.with_curves(self.curve, self.bends))
+        Elek2010 { size, ..self.clone() }.with_spans(self.spans, self.views)
+    }
+
+    /// Altitudes (m) at the ends of what the table holds.
+    pub fn altitudes(&self) -> [f64; 2] {
+        self.altitudes
+    }
+
+    /// Cosines of the lowest and highest sun that the table holds.
+    pub fn suns(&self) -> [f64; 2] {
+        self.suns
+    }
+
+    /// The parts of the altitude and sun axes that the table holds, in coordinates.
+    pub fn spans(&self) -> [Span; 2] {
+        self.spans
+    }
+
+    /// Which rays the table holds.
+    pub fn views(&self) -> Views {
+        self.views
+    }
+
+    /// Texels of a half of the view axis.
+    fn half(&self) -> usize {
+        if self.views == Views::All { self.size[1] / 2 } else { self.size[1] }
     }
 
     /// Radius of the ground and of the top, m.
@@ -116,12 +224,18 @@ impl Elek2010 {
         self.bends.altitude_coordinate(self.horizon_distance(altitude) / self.horizon_distance(self.height))
     }
 
-    /// Altitude of texel `i`, m: 0 for the first, the shell's height for the last.
+    /// Altitude of texel `i`, m: that of the window's ends, without one 0 and the shell's height, for first and last.
     pub fn altitude(&self, i: usize) -> f64 {
-        if i + 1 == self.size[0] {
-            return self.height;
+        let [low, high] = self.altitudes;
+        if low == high || (self.size[0] > 1 && i + 1 == self.size[0]) {
+            return high;
         }
-        let share = self.bends.altitude(i as f64 / (self.size[0] - 1) as f64);
+        self.altitude_at(self.spans[0].coordinate(i, self.size[0]))
+    }
+
+    /// Altitude of a coordinate, m.
+    fn altitude_at(&self, x: f64) -> f64 {
+        let share = self.bends.altitude(x);
         let z1 = self.horizon_distance(self.height) * share;
         let ground = self.ground_radius;
         z1 * z1 / (ground + (ground * ground + z1 * z1).sqrt())
@@ -199,10 +313,11 @@ impl Elek2010 {
 
     /// Cosine of the view zenith angle, and whether the ray hits the ground, of view texel `j` at an altitude.
     /// Texels 0 … N/2−1 go from nadir to the horizon, N/2 … N−1 from zenith to the horizon. On the ground the
-    /// first half is the limit from above: nadir, then the horizon for all the rest.
+    /// first half is the limit from above: nadir, then the horizon for all the rest. Of the sky alone the first half
+    /// is not there.
     pub fn mu(&self, altitude: f64, j: usize) -> (f64, bool) {
-        let half = self.size[1] / 2;
-        let (hits_ground, step) = (j < half, j % half);
+        let half = self.half();
+        let (hits_ground, step) = (j < half && self.views == Views::All, j % half);
         let end = if hits_ground { -1.0 } else { 1.0 };
         if step == 0 {
             return (end, hits_ground);
@@ -243,12 +358,18 @@ impl Elek2010 {
         Some((1.0 - libm::exp(-above)) / SUN_RANGE)
     }
 
-    /// Cosine of the sun's zenith angle of texel `k`: mu_s_min for the first, 1 for the last.
+    /// Cosine of the sun's zenith angle of texel `k`: that of the window's ends, without one mu_s_min and 1, for first
+    /// and last.
     pub fn mu_s(&self, k: usize) -> f64 {
-        if k + 1 == self.size[2] {
-            return 1.0;
+        let [low, high] = self.suns;
+        if low == high || (self.size[2] > 1 && k + 1 == self.size[2]) {
+            return high;
         }
-        let w = k as f64 / (self.size[2] - 1) as f64;
+        self.mu_s_at(self.spans[1].coordinate(k, self.size[2]))
+    }
+
+    /// Cosine of the sun's zenith angle of a coordinate.
+    fn mu_s_at(&self, w: f64) -> f64 {
         let x = |mu: f64| self.curve.quotient(mu);
         if let (Some(low), Some(high)) = (x(self.mu_s_min), x(1.0)) {
             return self.curve.mu_s(low + w * (high - low)).expect("a quotient has an inverse");
@@ -268,6 +389,15 @@ impl Elek2010 {
         2.0 * l as f64 / (self.size[3] - 1) as f64 - 1.0
     }
 
+    /// Cosines of the azimuths at which each texel of the azimuth axis is found, the same number for all: one texel
+    /// alone is the mean over all azimuths, by the rule that takes cos mφ for m up to 7 exactly.
+    pub fn cos_azimuths(&self) -> Vec<f64> {
+        match self.size[3] {
+            1 => (0..4).map(|j| libm::cos((2 * j + 1) as f64 * std::f64::consts::PI / 8.0)).collect(),
+            n => (0..n).map(|l| self.cos_azimuth(l)).collect(),
+        }
+    }
+
     // ---- all four ----------------------------------------------------------------------------------------
 
     /// Texels around (altitude in m, cosines), for [`super::Array::interpolate`] on an array of [`Self::size`];
@@ -285,28 +415,52 @@ impl Elek2010 {
     ) -> Option<[Texel; 4]> {
         debug_assert!(altitude <= self.height * (1.0 + 1e-6), "{altitude} m is no altitude in this shell");
         let [sun, azimuth] = self.sun_texels(mu_s, cos_azimuth)?;
-        let altitude_texel = texel(self.altitude_coordinate(altitude), self.size[0]);
-        Some([altitude_texel, self.view_texel(altitude, mu, hits_ground), sun, azimuth])
+        Some([self.altitude_texel(altitude), self.view_texel(altitude, mu, hits_ground), sun, azimuth])
     }
 
-    /// Texels around a sun zenith angle and azimuth; none where the sun is below the axis.
+    /// Texels around an altitude; beyond a window its end.
+    #[inline]
+    pub fn altitude_texel(&self, altitude: f64) -> Texel {
+        texel(self.spans[0].place(self.altitude_coordinate(altitude)), self.size[0])
+    }
+
+    /// Texels around a sun zenith angle and azimuth, beyond a window its end; none where the sun is below the axis.
     #[inline]
     pub fn sun_texels(&self, mu_s: f64, cos_azimuth: f64) -> Option<[Texel; 2]> {
-        let sun = texel(self.sun_coordinate(mu_s)?, self.size[2]);
+        let sun = texel(self.spans[1].place(self.sun_coordinate(mu_s)?), self.size[2]);
         Some([sun, texel(self.azimuth_coordinate(cos_azimuth), self.size[3])])
     }
 
-    /// Texels around a view direction, both in the half that `hits_ground` names.
+    /// Texels around a view direction, both in the half that `hits_ground` names; of the sky alone the horizon's, where
+    /// the ray meets the ground.
     #[inline]
     pub fn view_texel(&self, altitude: f64, mu: f64, hits_ground: bool) -> Texel {
-        let half = self.size[1] / 2;
+        let half = self.half();
+        if self.views == Views::Sky {
+            let x = if hits_ground { 1.0 } else { self.view_coordinate(altitude, mu, false) };
+            return texel(x, half);
+        }
         let (index, fraction) = texel(self.view_coordinate(altitude, mu, hits_ground), half);
         (if hits_ground { index } else { half + index }, fraction)
     }
 
     /// The axes for a manifest. Texel i of n has the coordinate i / (n − 1); for the view axis that holds
-    /// within each half of n / 2 texels.
+    /// within each half of n / 2 texels. Of an axis of which the table holds a part, the constants `window_low` and
+    /// `window_high` are the coordinates of its ends.
     pub fn axes(&self) -> [AxisFormula; 4] {
+        let mut axes = self.whole_axes();
+        for (axis, span) in [(0, self.spans[0]), (2, self.spans[1])] {
+            if span != Span::WHOLE {
+                axes[axis].constants.extend([(WINDOW[0], span.low), (WINDOW[1], span.high)]);
+            }
+        }
+        if self.views == Views::Sky {
+            axes[1].constants.push((HALVES, 1.0));
+        }
+        axes
+    }
+
+    fn whole_axes(&self) -> [AxisFormula; 4] {
         let z2 = self.horizon_distance(self.height);
         let radii =
             vec![("r_ground", self.ground_radius), ("r_top", self.ground_radius + self.height), ("Z2", z2)];

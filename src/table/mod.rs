@@ -6,10 +6,12 @@ mod bruneton;
 mod elek2010;
 mod sun_curve;
 mod water;
+mod window;
 
 pub use array::{Array, Element, Texel, texel};
 pub use bends::Bends;
 pub use bruneton::Bruneton;
-pub use elek2010::{AxisFormula, Elek2010};
+pub use elek2010::{AxisFormula, Elek2010, HALVES, WINDOW};
 pub use sun_curve::SunCurve;
 pub use water::{EvenCosine, WaterAxes};
+pub use window::{Span, Views, Window};

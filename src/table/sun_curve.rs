@@ -15,27 +15,56 @@ pub enum SunCurve {
 }
 
 impl SunCurve {
-    /// The same curve with its shift moved by less than a texel, so that one of `size` texels of an axis from
-    /// `mu_s_min` lies at mu_s = 0: there the planet's shadow meets the ground, and light scattered once ends at
-    /// a step that no texel pair may straddle by day. Curves without a shift stay as they are.
-    pub fn with_texel_at_horizon(self, mu_s_min: f64, size: usize) -> Self {
+    /// The same curve with its shift moved by less than a texel, so that one of `size` texels of an axis from one
+    /// mu_s to another lies at mu_s = 0: there the planet's shadow meets the ground, and light scattered once ends at
+    /// a step that no texel pair may straddle by day. Curves without a shift, and axes that do not cross 0, stay as
+    /// they are.
+    pub fn with_texel_at_horizon(self, [mu_s_min, mu_s_max]: [f64; 2], size: usize) -> Self {
+        if !(mu_s_min < 0.0 && 0.0 < mu_s_max) {
+            return self;
+        }
         let SunCurve::Rational { shift, width } = self else { return self };
         let steps = size.saturating_sub(1) as f64;
         let place = |shift: f64| {
             let x = |mu: f64| (mu + shift) / ((mu + shift).abs() + width);
-            steps * (x(0.0) - x(mu_s_min)) / (x(1.0) - x(mu_s_min))
+            steps * (x(0.0) - x(mu_s_min)) / (x(mu_s_max) - x(mu_s_min))
         };
         // The place of mu_s = 0 moves towards the end of the axis as the shift grows.
         let wanted = place(shift).round();
         let (mut low, mut high) = (-0.5 * width, shift + width);
         if !(place(low) < wanted && wanted < place(high)) {
-            return self;
+            return self.with_texel_near_horizon(place, [low, high]);
         }
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
             if place(middle) < wanted { low = middle } else { high = middle }
         }
         SunCurve::Rational { shift: high, width }
+    }
+
+    /// On a part of the axis the place of mu_s = 0 comes and goes with the shift: the nearest shift at which it is that of
+    /// a texel; this curve where there is none.
+    fn with_texel_near_horizon(self, place: impl Fn(f64) -> f64, [low, high]: [f64; 2]) -> Self {
+        const STEPS: usize = 256;
+        let SunCurve::Rational { shift, width } = self else { return self };
+        let at = |k: usize| low + (high - low) * k as f64 / STEPS as f64;
+        let mut best: Option<f64> = None;
+        for k in 0..STEPS {
+            let (mut a, mut b) = (at(k), at(k + 1));
+            let wanted = place(a).max(place(b)).floor();
+            let crosses = wanted >= 1.0 && wanted > place(a).min(place(b));
+            let nearer = best.is_none_or(|best| (b - shift).abs() < (best - shift).abs());
+            if !(crosses && nearer) {
+                continue;
+            }
+            let rises = place(b) > place(a);
+            for _ in 0..60 {
+                let middle = 0.5 * (a + b);
+                if (place(middle) < wanted) == rises { a = middle } else { b = middle }
+            }
+            best = Some(b);
+        }
+        best.map_or(self, |shift| SunCurve::Rational { shift, width })
     }
 
     /// x(mu_s), −1 to 1; none for the paper's curve, which is no quotient.
@@ -122,7 +151,8 @@ mod tests {
     fn a_texel_lies_at_the_horizon() {
         let width = 0.13;
         for (mu_s_min, size) in [(-0.2857, 38), (-0.2857, 41), (-0.8, 20), (-0.3, 97)] {
-            let curve = SunCurve::Rational { shift: 0.05, width }.with_texel_at_horizon(mu_s_min, size);
+            let curve =
+                SunCurve::Rational { shift: 0.05, width }.with_texel_at_horizon([mu_s_min, 1.0], size);
             let x = |mu: f64| curve.quotient(mu).unwrap();
             let at = (size - 1) as f64 * (x(0.0) - x(mu_s_min)) / (x(1.0) - x(mu_s_min));
             assert!((at - at.round()).abs() < 1e-9, "{mu_s_min} {size}: {at}");

@@ -5,7 +5,7 @@ use clap::Args;
 use std::fs;
 use tyndall::commands;
 
-const COMMANDS: [&str; 13] = [
+const COMMANDS: [&str; 14] = [
     "bake",
     "diff",
     "recolour",
@@ -13,6 +13,7 @@ const COMMANDS: [&str; 13] = [
     "reference",
     "verify",
     "chart",
+    "plan",
     "colour",
     "presets",
     "presets list",
@@ -43,6 +44,7 @@ fn parse(example: &str) -> Result<(), clap::Error> {
         "recolour" => commands::recolour::Args::augment_args(named),
         "verify" => commands::verify::Args::augment_args(named),
         "chart" => commands::chart::Args::augment_args(named),
+        "plan" => commands::plan::Args::augment_args(named),
         "colour" => commands::colour::Args::augment_args(named),
         "presets" => commands::presets::Args::augment_args(named),
         other => panic!("{example}: {other} is not tested"),

@@ -16,7 +16,7 @@ fn warnings(settings: &Settings) -> Vec<String> {
 fn tables_that_are_too_coarse_are_warned_of() {
     let coarse = Settings {
         elek2010_size: [12, 2, 24, 6],
-        compact_sizes: Sizes { single: [10, 20, 2, 4], multiple: [8, 20, 2, 6] },
+        compact: Sizes { single: [10, 20, 2, 4], multiple: [8, 20, 2, 6], ..Sizes::default() }.into(),
         ..Settings::default()
     };
     let told = warnings(&coarse);
@@ -36,7 +36,7 @@ fn a_medium_that_the_paper_simplifies_too_far_is_warned_of() {
     let planet = preset::load("mars", &[]).unwrap();
     let settings = Settings {
         elek2010_size: [12, 48, 24, 6],
-        compact_sizes: Sizes { single: [10, 20, 20, 4], multiple: [8, 20, 20, 6] },
+        compact: Sizes { single: [10, 20, 20, 4], multiple: [8, 20, 20, 6], ..Sizes::default() }.into(),
         ..Settings::default()
     };
     let told = bake(&planet, &settings, &mut |_| {}).unwrap().manifest.warnings;

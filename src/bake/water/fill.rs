@@ -10,7 +10,7 @@ use crate::transport::slab::{Angles, Dome, Layer, Slab};
 use rayon::prelude::*;
 
 /// Texels of depth of tables without a sun axis, which cost little.
-const DEPTHS: usize = 128;
+pub(super) const DEPTHS: usize = 128;
 /// Powers p that the axis D = D_max x^p may have: at 3 and 32 texels to 100 m the second is 3 mm deep and the last
 /// step 10 m.
 const DEPTH_POWERS: [f64; 5] = [2.0, 3.0, 4.0, 5.0, 6.0];

@@ -17,6 +17,7 @@ mod fill;
 mod report;
 mod shared;
 mod skylight;
+mod trial;
 mod underwater;
 
 use super::palette::Palette;
@@ -34,6 +35,7 @@ pub use colour::spectra;
 pub use report::report;
 pub use shared::{LAZANYI, REFLECTED, TRANSMITTED, UNDERSIDE};
 pub use skylight::{FINE, Skylight, Split};
+pub use trial::{Trial, Under, bytes};
 
 /// Name of the layout and of its folder.
 pub const LAYOUT: &str = "water";
@@ -100,13 +102,26 @@ pub fn tables(
             out.tables.extend(underwater::tables(water, &media, &slabs, waters.orders));
         }
         let (matrix, error) = colour::fit(planet, water, medium, solution, &out.split, palette)?;
-        let key = |what: &str| format!("water_{}_{what}", water.name);
-        out.matrices.insert(key("rgb_from_four"), matrix);
-        out.colours.insert(water.name.clone(), error);
-        out.constants.insert(key("seabed_albedo_at_four"), media.seabed_albedo.clone());
-        out.constants.insert(key("refractive_index_at_four"), media.refractive_index.clone());
-        out.constants.insert(key("kappa_per_m"), slabs.iter().map(fill::rise).collect());
-        out.constants.insert(key("largest_depth_m"), vec![water.largest_depth]);
+        out.describe(water, (&media, &slabs), matrix, error);
     }
     Ok(out)
+}
+
+impl WaterTables {
+    /// Adds what the manifest has to say of a water.
+    fn describe(
+        &mut self,
+        water: &Water,
+        (media, slabs): (&WaterMedium, &[Slab]),
+        matrix: Vec<Vec<f64>>,
+        error: [super::palette::ColourError; 2],
+    ) {
+        let key = |what: &str| format!("water_{}_{what}", water.name);
+        self.matrices.insert(key("rgb_from_four"), matrix);
+        self.colours.insert(water.name.clone(), error);
+        self.constants.insert(key("seabed_albedo_at_four"), media.seabed_albedo.clone());
+        self.constants.insert(key("refractive_index_at_four"), media.refractive_index.clone());
+        self.constants.insert(key("kappa_per_m"), slabs.iter().map(fill::rise).collect());
+        self.constants.insert(key("largest_depth_m"), vec![water.largest_depth]);
+    }
 }

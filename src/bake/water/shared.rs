@@ -13,8 +13,8 @@ use crate::transport::slab::{Surface, fresnel, lazanyi_szirmay_kalos};
 use crate::transport::solve::{Solution, lowest_sun};
 
 /// Texels of the sun axis of the light on the surface, and of the angle of Fresnel's table.
-const SUNS: usize = 1024;
-const ANGLES: usize = 256;
+pub(super) const SUNS: usize = 1024;
+pub(super) const ANGLES: usize = 256;
 
 /// Rows of `fresnel`.
 pub const REFLECTED: usize = 0;

@@ -76,6 +76,7 @@ impl Skylight {
 }
 
 /// The split of the sky's light on the surface for every sun.
+#[derive(Clone)]
 pub struct Split {
     least: f64,
     /// `[sun][wavelength]`

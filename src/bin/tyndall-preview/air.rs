@@ -40,7 +40,12 @@ fn read(bake: &Bake) -> std::result::Result<Air, String> {
             bake.manifest.constants.get(&key).ok_or(format!("constants.{key} is missing"))
         };
         let (scattering, extinction) = (list("scattering_at_four_per_m")?, list("extinction_at_four_per_m")?);
-        let row = list("phase_row")?.first().map(|r| *r as usize).filter(|r| *r < groups);
+        let row = list("phase_row")?.first().map(|r| *r as usize);
+        if row.is_some_and(|r| r >= groups) {
+            return Err(format!(
+                "constituents.{name}: folded into the table of the rest: there is nothing to march"
+            ));
+        }
         let [ground, top] = bake.radii();
         for k in 0..ALTITUDES {
             let altitude = (top - ground) * k as f64 / (ALTITUDES - 1) as f64;

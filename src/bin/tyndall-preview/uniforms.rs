@@ -3,6 +3,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use tyndall::export::manifest::{EncodingKind, Manifest, Table};
+use tyndall::table::{HALVES, WINDOW};
 
 /// As many groups of single scattering as `shell.wgsl` has room for.
 pub const MOST_GROUPS: usize = 6;
@@ -15,6 +16,7 @@ pub struct TableUniform {
     pub radii: [f32; 4],
     pub bends: [f32; 4],
     pub sun: [f32; 4],
+    pub window: [f32; 4],
     pub scale: [f32; 4],
     pub offset: [f32; 4],
     pub floor: [f32; 4],
@@ -56,7 +58,10 @@ impl TableUniform {
         let power = |name: &str| number(name, 1.0);
         out.bends = [number("altitude_bend", 0.0), power("view_power"), power("horizon_power"), kind];
         let middle = constant("shift").or(constant("centre")).unwrap_or(0.0) as f32;
-        out.sun = [middle, number("width", 1.0), 0.0, 0.0];
+        let halves = f32::from(u8::from(constant(HALVES) == Some(1.0)));
+        out.sun = [middle, number("width", 1.0), halves, 0.0];
+        let [[altitude, rise], [sun, climb]] = ["altitude", "sun"].map(|axis| window(table, axis));
+        out.window = [altitude, rise, sun, climb];
         out.set_decoding(table);
         out
     }
@@ -104,6 +109,14 @@ impl TablesUniform {
 fn vectors(rows: &[[f32; 4]]) -> String {
     let number = |v: f32| format!("{:e}", if v.is_finite() { v } else { f32::MAX });
     rows.iter().map(|row| format!("vec4f({})", row.map(number).join(", "))).collect::<Vec<_>>().join(", ")
+}
+
+/// Start of what a table holds of an axis, and 1 over its extent, 0 where it has none.
+fn window(table: &Table, axis: &str) -> [f32; 2] {
+    let axis = table.axes.iter().find(|a| a.name == axis);
+    let end = |name: &str| axis.and_then(|a| a.constants.get(name)).copied();
+    let (Some(low), Some(high)) = (end(WINDOW[0]), end(WINDOW[1])) else { return [0.0, 1.0] };
+    [low as f32, if high > low { (1.0 / (high - low)) as f32 } else { 0.0 }]
 }
 
 /// Up to four numbers as a vector, the rest 0.

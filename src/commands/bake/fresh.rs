@@ -66,9 +66,9 @@ pub fn current(folder: &Path, planet: &Planet, settings: &Settings) -> Option<Do
 ///
 /// # Errors
 /// `Check` if a bake is stale; where a preset cannot be read, that error, or how many of several failed.
-pub fn check(args: &Args, settings: &Settings, asked: &[String], planets: Vec<Result<Planet>>) -> Result<()> {
+pub fn check(args: &Args, all: &[Settings], asked: &[String], planets: Vec<Result<Planet>>) -> Result<()> {
     let (mut out, mut outcomes) = (String::new(), Vec::new());
-    for (asked_name, planet) in asked.iter().zip(planets) {
+    for ((asked_name, settings), planet) in asked.iter().zip(all).zip(planets) {
         let (name, result) = match planet {
             Err(error) => (asked_name.clone(), Err(error)),
             Ok(planet) => {

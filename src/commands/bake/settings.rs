@@ -2,20 +2,59 @@
 
 use super::super::machine::wavelengths;
 use super::Args;
-use crate::bake::compact::Sizes;
+use super::progress::Progress;
+use super::window::{Sized, fitted};
 use crate::bake::settings::{Layout, Settings, Solver, Storage};
 use crate::bake::water::Waters;
 use crate::error::{Error, Result};
 use crate::export::container::Container;
 use crate::methods::literal::Gather;
-use crate::preset;
+use crate::plan::{Effort, plan};
+use crate::preset::{self, Planet, Scene, Tolerance};
 use crate::spectrum::Rgb;
-use crate::table::Elek2010;
+use crate::table::{Views, Window};
 use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
 
-/// The settings that hold for every preset of the run.
-pub fn settings(args: &Args) -> Result<Settings> {
+/// The settings of each planet of a run: where tables are for a window, their sizes depend on the shell.
+pub fn for_planets(settings: &Settings, sized: Sized, planets: &[Result<Planet>]) -> Vec<Settings> {
+    let of = |planet: &Result<Planet>| match planet {
+        Ok(planet) if settings.window != Window::WHOLE => {
+            fitted(settings, &planet.medium(&settings.wavelengths_nm), sized)
+        }
+        _ => settings.clone(),
+    };
+    planets.iter().map(of).collect()
+}
+
+/// Settings of the least model for a planet within a tolerance: by day and wherever there is to be, or in the window
+/// that was asked for.
+pub fn planned(
+    args: &Args,
+    planet: &Planet,
+    settings: &Settings,
+    tolerance: Tolerance,
+    progress: &Progress,
+) -> Result<Settings> {
+    let mut scene = Scene::default_of(&planet.name, planet.top_radius - planet.ground_radius, tolerance);
+    scene.altitudes = args.altitudes.unwrap_or(scene.altitudes);
+    scene.suns = args.suns.unwrap_or(scene.suns);
+    if args.views == "sky" {
+        scene.elevations[0] = 0.0;
+    }
+    let mut talk = |text: &str| progress.say(&format!("{}: {text}", planet.name));
+    let plan =
+        plan(planet, &scene, &Effort::default(), &mut talk, &|| crate::clock::cpu_time().as_secs_f64())?;
+    if !plan.unmet.is_empty() {
+        let reason = plan.unmet.join("; ");
+        return Err(Error::Check(format!("{}: no model holds: {reason}", planet.name)));
+    }
+    progress.say(&format!("{}: planned: {}", planet.name, plan.command()));
+    Ok(plan.planned.model.settings(settings))
+}
+
+/// The settings that hold for every preset of the run, and which sizes were asked for.
+pub fn settings(args: &Args) -> Result<(Settings, Sized)> {
     let mut layouts = args.layout.clone();
     layouts.sort();
     layouts.dedup();
@@ -36,8 +75,16 @@ pub fn settings(args: &Args) -> Result<Settings> {
         spectral: args.spectral,
         storage: storage(args),
         waters,
+        window: Window {
+            altitudes: args.altitudes,
+            suns: args.suns,
+            views: if args.views == "sky" { Views::Sky } else { Views::All },
+        },
         ..Settings::default()
     };
+    settings.compact.folded = args.fold.clone();
+    settings.compact.without_scatterers = args.without.is_some();
+    refuse_parts(args, &settings)?;
     if literal && matches!(args.orders, Orders::Converged { .. }) {
         return Err(Error::Argument("--solver literal sums orders one by one: give --orders N".into()));
     }
@@ -49,6 +96,7 @@ pub fn settings(args: &Args) -> Result<Settings> {
             )));
         }
     }
+    let mut sized = Sized::default();
     for text in &args.size {
         let (name, size) = text.split_once('=').unwrap_or((Layout::Elek2010.name(), text));
         if name == "water" {
@@ -59,22 +107,53 @@ pub fn settings(args: &Args) -> Result<Settings> {
             })?;
             continue;
         }
-        let size = parse_size(size).map_err(|reason| Error::Argument(format!("--size {text}: {reason}")))?;
+        let refuse = |reason: String| Error::Argument(format!("--size {text}: {reason}"));
+        if name == "compact-transmittance" {
+            let [altitude, view] = numbers(size).map_err(refuse)?;
+            check_size([altitude, view, 2, 2], &settings.window).map_err(refuse)?;
+            (settings.compact.sizes.depth, sized.depth) = ([altitude, view], true);
+            continue;
+        }
+        let size = numbers(size).map_err(refuse)?;
+        check_size(size, &settings.window).map_err(refuse)?;
         match name {
-            "elek2010" => settings.elek2010_size = size,
-            "compact" => settings.compact_sizes = Sizes { multiple: size, ..settings.compact_sizes },
-            "compact-single" => settings.compact_sizes = Sizes { single: size, ..settings.compact_sizes },
+            "elek2010" => (settings.elek2010_size, sized.elek2010) = (size, true),
+            "compact" => (settings.compact.sizes.multiple, sized.multiple) = (size, true),
+            "compact-single" => (settings.compact.sizes.single, sized.single) = (size, true),
             "three-atmosphere" => {
                 let fixed = "the sizes of three-atmosphere are compiled into its reader";
                 return Err(Error::Argument(format!("--size {text}: {fixed}")));
             }
             other => {
-                let known = "elek2010, compact, compact-single or water";
+                let known = "elek2010, compact, compact-single, compact-transmittance or water";
                 return Err(Error::Argument(format!("--size {text}: {other} is not one of {known}")));
             }
         }
     }
-    Ok(settings)
+    Ok((settings, sized))
+}
+
+/// Options that leave out parts of tables which other options need.
+fn refuse_parts(args: &Args, settings: &Settings) -> Result<()> {
+    let refuse = |reason: &str| Err(Error::Argument(reason.to_string()));
+    let windowed = settings.window != Window::WHOLE;
+    if windowed && args.solver == "literal" {
+        return refuse("--solver literal fills whole tables: leave --altitudes, --suns and --views out");
+    }
+    if windowed && args.spectral {
+        return refuse("--spectral is of whole tables: leave --altitudes, --suns and --views out");
+    }
+    if windowed && args.layout.contains(&Layout::ThreeAtmosphere) {
+        return refuse("three-atmosphere has whole tables: leave --altitudes, --suns and --views out");
+    }
+    let compact = args.layout.contains(&Layout::Compact);
+    for (option, given) in [("--fold", !args.fold.is_empty()), ("--without", args.without.is_some())] {
+        if given && !compact {
+            let reason = format!("{option} is of the layout compact, which --layout leaves out");
+            return Err(Error::Argument(reason));
+        }
+    }
+    Ok(())
 }
 
 /// Containers besides EXR, each once, in a fixed order.
@@ -92,7 +171,19 @@ fn waters(args: &Args) -> Result<Waters> {
     if names.len() != args.waters.len() && args.waters.len() > 1 {
         return Err(Error::Argument("--waters: `none` stands alone".into()));
     }
-    let list = names.iter().map(|w| preset::load_water(w, &[])).collect::<Result<Vec<_>>>()?;
+    let mut list = names.iter().map(|w| preset::load_water(w, &[])).collect::<Result<Vec<_>>>()?;
+    if !args.water_depths.is_empty() && args.water_depths.len() != list.len() {
+        let (given, of) = (args.water_depths.len(), list.len());
+        return Err(Error::Argument(format!("--water-depths: {given} for {of} of --waters")));
+    }
+    for (water, &depth) in list.iter_mut().zip(&args.water_depths) {
+        if !(depth > 0.0 && depth <= water.largest_depth) {
+            let most = water.largest_depth;
+            let reason = format!("{} has depths up to {most} m", water.name);
+            return Err(Error::Argument(format!("--water-depths {depth}: {reason}")));
+        }
+        water.largest_depth = depth;
+    }
     for (k, water) in list.iter().enumerate() {
         if list[..k].iter().any(|other| other.name == water.name) {
             return Err(Error::Argument(format!("--waters: two are named {}", water.name)));
@@ -125,17 +216,29 @@ fn water_size(text: &str) -> Option<[usize; 3]> {
 /// Texels that a table may have: 256 million floats of four channels are four gigabytes.
 const MOST_TEXELS: usize = 1 << 26;
 
-fn parse_size(text: &str) -> std::result::Result<[usize; 4], String> {
+fn numbers<const N: usize>(text: &str) -> std::result::Result<[usize; N], String> {
     let parts: Vec<usize> = text
         .split('x')
         .map(|p| p.parse().map_err(|_| format!("`{p}` is not a number")))
         .collect::<std::result::Result<_, String>>()?;
-    let size: [usize; 4] =
-        parts.try_into().map_err(|_| "expected four numbers, e.g. 32x128x32x8".to_string())?;
+    let example = if N == 4 { "four numbers, e.g. 32x128x32x8" } else { "two numbers, e.g. 48x128" };
+    parts.try_into().map_err(|_| format!("expected {example}"))
+}
+
+/// Whether a table of a window may have a size.
+fn check_size(size: [usize; 4], window: &Window) -> std::result::Result<(), String> {
     let texels = size.iter().try_fold(1usize, |n, &s| n.checked_mul(s)).filter(|&n| n <= MOST_TEXELS);
     if texels.is_none() {
         return Err(format!("more than {MOST_TEXELS} texels"));
     }
-    Elek2010::new(1.0, 2.0, size).ok_or("every size is at least 2, that of the view even".to_string())?;
-    Ok(size)
+    let [altitudes, views, suns, azimuths] = size;
+    let one = |n: usize, given: bool| n >= if given { 1 } else { 2 };
+    if !one(altitudes, window.altitudes.is_some()) || !one(suns, window.suns.is_some()) {
+        return Err("every size is at least 2; 1 of altitude needs --altitudes, 1 of sun --suns".into());
+    }
+    let halves = if window.views == Views::All { 2 } else { 1 };
+    if azimuths == 0 || views < 2 || !views.is_multiple_of(halves) {
+        return Err("every size is at least 2 (of azimuth 1), that of the view even".into());
+    }
+    Ok(())
 }

@@ -26,8 +26,11 @@ struct Table {
     radii: vec4f,
     // altitude_bend, view_power, horizon_power, kind of the sun axis: 0 the paper's, 1 `shift`, 2 `centre`.
     bends: vec4f,
-    // shift or centre, and width, of the sun axis.
+    // shift or centre, and width, of the sun axis; 1 where the view axis has its second half alone, the sky.
     sun: vec4f,
+    // What part of the altitude and of the sun axis the texels hold: the coordinate of its start, and 1 over its extent
+    // (0 where it has none), of each.
+    window: vec4f,
     // Decoding, for each channel: value = scale * stored + offset, or, where `log` is 1, 0 for stored <= floor and
     // scale * exp(stored + offset) above it.
     scale: vec4f,
@@ -168,7 +171,19 @@ fn texel(x: f32, n: f32) -> f32 {
     return clamp(x, 0.0, 1.0) * (n - 1.0);
 }
 
+// Texels of an altitude and of a sun; beyond what the table holds the last that it does.
+fn altitude_texel(t: Table, altitude: f32) -> f32 {
+    return texel((altitude_coordinate(t, altitude) - t.window.x) * t.window.y, t.size.x);
+}
+
+fn sun_texel(t: Table, mu_s: f32) -> f32 {
+    return texel((sun_coordinate(t, mu_s) - t.window.z) * t.window.w, t.size.z);
+}
+
 fn view_texel(t: Table, p: Place) -> f32 {
+    if t.sun.z > 0.5 {
+        return texel(select(view_coordinate(t, p), 1.0, p.hits_ground), t.size.y);
+    }
     let half = 0.5 * t.size.y;
     return texel(view_coordinate(t, p), half) + select(half, 0.0, p.hits_ground);
 }
@@ -209,15 +224,18 @@ fn fetch_volume(texture: texture_3d<f32>, filtering: sampler, at: vec3f) -> vec4
 // Where a place lies in a 4D table: x, y, z in the slices of the lower azimuth, and the share of the next azimuth.
 fn volume_texel(t: Table, p: Place) -> vec4f {
     let azimuth = texel(p.azimuth, t.size.w);
-    let lower = min(floor(azimuth), t.size.w - 2.0);
-    let sun = texel(sun_coordinate(t, p.mu_s), t.size.z);
-    let x = texel(altitude_coordinate(t, p.altitude), t.size.x);
-    return vec4f(x, view_texel(t, p), lower * t.size.z + sun, azimuth - lower);
+    let lower = max(min(floor(azimuth), t.size.w - 2.0), 0.0);
+    let z = lower * t.size.z + sun_texel(t, p.mu_s);
+    return vec4f(altitude_texel(t, p.altitude), view_texel(t, p), z, azimuth - lower);
 }
 
 // Stored sample of the 4D table number `group` of a stack.
 fn fetch_4d(t: Table, texture: texture_3d<f32>, filtering: sampler, at: vec4f, group: f32) -> vec4f {
     let lower = at.xyz + vec3f(0.0, 0.0, group * t.size.z * t.size.w);
+    // With one sun the azimuth alone runs along z, and with one azimuth the sun: one fetch does.
+    if min(t.size.z, t.size.w) < 1.5 {
+        return fetch_volume(texture, filtering, lower + vec3f(0.0, 0.0, at.w));
+    }
     let a = fetch_volume(texture, filtering, lower);
     let b = fetch_volume(texture, filtering, lower + vec3f(0.0, 0.0, t.size.z));
     return mix(a, b, at.w);
@@ -225,7 +243,7 @@ fn fetch_4d(t: Table, texture: texture_3d<f32>, filtering: sampler, at: vec4f, g
 
 // Optical depth of a ray, of a table over altitude and view.
 fn depth_at(t: Table, texture: texture_2d<f32>, filtering: sampler, p: Place) -> vec4f {
-    let at = vec2f(texel(altitude_coordinate(t, p.altitude), t.size.x), view_texel(t, p));
+    let at = vec2f(altitude_texel(t, p.altitude), view_texel(t, p));
     let stored = fetch_plane(texture, filtering, at);
     return decode(t, stored) * select(1.0, p.length, t.radii.w > 0.5);
 }

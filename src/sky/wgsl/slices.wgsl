@@ -6,8 +6,8 @@
 
 // The texel of a slice, for the pass that fills it: stored samples weighed by altitude and sun.
 fn slice_texel(t: Table, texture: texture_3d<f32>, altitude: f32, mu_s: f32, at: vec2i, group: i32) -> vec4f {
-    let x = texel(altitude_coordinate(t, altitude), t.size.x);
-    let sun = texel(sun_coordinate(t, mu_s), t.size.z);
+    let x = altitude_texel(t, altitude);
+    let sun = sun_texel(t, mu_s);
     let low = vec2i(vec2f(x, sun));
     let high = min(low + 1, vec2i(t.size.xz) - 1);
     let w = vec2f(x, sun) - vec2f(low);

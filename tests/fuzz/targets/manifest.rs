@@ -26,7 +26,7 @@ fn pictures() -> &'static Vec<BTreeMap<String, Atlas>> {
         let settings = Settings {
             layouts: vec![Layout::Elek2010, Layout::Compact],
             elek2010_size: size,
-            compact_sizes: Sizes { single: size, multiple: size },
+            compact: Sizes { single: size, multiple: size, ..Sizes::default() }.into(),
             wavelengths_nm: vec![450.0, 550.0, 650.0],
             ..Settings::default()
         };
