@@ -19,6 +19,8 @@
 //! their Eq. 8, is present. Radiances are per unit solar irradiance on a plane normal to the beam (1/sr).
 
 pub mod bake;
+pub mod chart;
+pub mod clock;
 pub mod commands;
 pub mod error;
 pub mod export;

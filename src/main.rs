@@ -2,7 +2,7 @@
 
 use clap::Parser;
 use std::io::Write;
-use tyndall::commands::{bake, colour, diff, presets, recolour, reference, sample, verify};
+use tyndall::commands::{bake, chart, colour, diff, presets, recolour, reference, sample, verify};
 
 /// Offline baker of lookup tables for planetary atmospheres
 #[derive(Parser)]
@@ -15,6 +15,7 @@ enum Command {
     Verify(verify::Args),
     Diff(diff::Args),
     Recolour(recolour::Args),
+    Chart(chart::Args),
     Colour(colour::Args),
     Presets(presets::Args),
 }
@@ -40,6 +41,7 @@ fn run(command: Command) -> tyndall::Result<()> {
         Command::Verify(args) => verify::run(&args),
         Command::Diff(args) => diff::run(&args),
         Command::Recolour(args) => recolour::run(&args),
+        Command::Chart(args) => chart::run(&args),
         Command::Colour(args) => colour::run(&args),
         Command::Presets(args) => presets::run(&args),
     }

@@ -29,8 +29,13 @@ const COLUMNS: [&str; 4] = ["altitude_m", "mu_view", "mu_sun", "azimuth_deg"];
 
 /// Reads points from a CSV file. Errors name the file, line, column and value.
 pub fn read_points(path: &Path) -> Result<Vec<Point>> {
-    let mut reader =
-        csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(|e| Error::file(path, e))?;
+    let file = std::fs::File::open(path).map_err(|e| Error::reading(path, e))?;
+    parse_points(path, std::io::BufReader::new(file))
+}
+
+/// [`read_points`] of any stream; `path` is for messages only.
+pub fn parse_points(path: &Path, stream: impl std::io::Read) -> Result<Vec<Point>> {
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(stream);
     let header = reader.headers().map_err(|e| Error::file(path, e))?.clone();
     let mut index = [0; 4];
     for (slot, name) in index.iter_mut().zip(COLUMNS) {

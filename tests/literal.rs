@@ -258,3 +258,25 @@ fn work_counts_the_samples() {
     assert_eq!(work(&per_texel), texels * 30.0 + 5.0 * (texels * (1800.0 + 30.0) + ambient));
     assert!(work(&Settings::default()) < 0.52 * work(&per_texel));
 }
+
+/// Without a table each sample gathers afresh what a 4D table interpolates: the same order 2, up to that interpolation.
+/// With a 2D table the phase function is lost, for light that has been scattered once a matter of some per cent.
+#[test]
+fn other_tables_gather_nearly_the_same_light() {
+    let medium = small_world();
+    let base = settings([9, 24, 12, 5], 2, 12);
+    let [table, mean, none] = [Gather::PerPoint, Gather::Mean, Gather::AtSample]
+        .map(|gather| run(&medium, &Settings { gather, ..base.clone() }));
+    let first = run(&medium, &Settings { orders: 1, ..base });
+    for (altitude, mu, mu_s, cos_azimuth) in
+        [(3e3, 0.6, 0.5, 0.3), (20e3, 0.2, 0.8, -0.5), (8e3, -0.9, 0.9, 0.9)]
+    {
+        let second = |l: &Literal| {
+            sum(l.at(altitude, mu, mu_s, cos_azimuth), 0) - sum(first.at(altitude, mu, mu_s, cos_azimuth), 0)
+        };
+        let expected = second(&none);
+        let [by_table, by_mean] = [second(&table) / expected, second(&mean) / expected];
+        assert!((by_table - 1.0).abs() < 0.03, "4D at {altitude} {mu}: {by_table}");
+        assert!((by_mean - 1.0).abs() < 0.12 && by_mean != by_table, "2D at {altitude} {mu}: {by_mean}");
+    }
+}

@@ -3,11 +3,16 @@
 
 mod preview {
     mod answers;
+    mod bench;
+    #[cfg(target_os = "linux")]
+    mod drop;
     mod golden;
     mod isolation;
     mod pictures;
     mod refused;
     mod run;
     mod seams;
+    mod water;
+    #[cfg(target_os = "linux")]
     mod window;
 }

@@ -149,7 +149,7 @@ impl BatchWeights {
 
 /// Sums of the lanes of four vectors, in a fixed order that vectorises: quarters are folded onto each other.
 #[inline(always)]
-fn sums(v: [Lanes; 4]) -> [f32; 4] {
+pub(super) fn sums(v: [Lanes; 4]) -> [f32; 4] {
     let mut quarter = [0.0f32; 16];
     for c in 0..4 {
         for k in 0..4 {
@@ -223,7 +223,7 @@ fn scattering(
 }
 
 /// The power of two that brings the brightest value close below what halves hold comfortably.
-fn power_of_two(brightest: f64) -> f64 {
+pub(super) fn power_of_two(brightest: f64) -> f64 {
     if brightest <= 0.0 {
         return 1.0;
     }

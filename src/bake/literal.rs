@@ -2,7 +2,7 @@
 
 use super::elek2010::{Oddities, finish, mapping};
 use super::palette::Palette;
-use super::settings::Settings;
+use super::settings::{Settings, Solver};
 use super::tables::Baked;
 use crate::error::{Error, Result};
 use crate::lanes::{Lanes, WIDTH};
@@ -16,8 +16,10 @@ pub fn tables(
     solution: &Solution,
     palette: &Palette,
     settings: &Settings,
-    samples: usize,
 ) -> Result<(Vec<Baked>, Oddities)> {
+    let Solver::Literal { samples, gather } = settings.solver else {
+        return Err(Error::Argument("these settings ask for no literal solver".into()));
+    };
     let Orders::First(orders) = settings.orders else {
         return Err(Error::Argument("--solver literal sums orders one by one: give --orders N".into()));
     };
@@ -28,7 +30,7 @@ pub fn tables(
     let rgb = palette.rgb_weights();
     for first in (0..medium.wavelengths_nm.len()).step_by(WIDTH) {
         let range: Vec<usize> = (first..medium.wavelengths_nm.len().min(first + WIDTH)).collect();
-        let algorithm = literal::Settings { size, orders, samples, ..Default::default() };
+        let algorithm = literal::Settings { size, orders, samples, gather, ..Default::default() };
         let part = literal::bake(&medium.at_wavelengths(&range), &algorithm, &|_, _| {})?;
         let dot = |light: Lanes, weight: &dyn Fn(usize) -> f64| -> f64 {
             range.iter().enumerate().map(|(k, &w)| f64::from(light[k]) * weight(w)).sum()

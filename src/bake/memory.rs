@@ -7,6 +7,7 @@ use super::compact::groups;
 use super::settings::{Layout, Settings};
 use crate::medium::Medium;
 use crate::preset::Planet;
+use crate::table::Bruneton;
 use crate::transport::solve::Resolution;
 
 /// What every bake takes, bytes: picture, report, look-up of colours.
@@ -31,15 +32,16 @@ const MARGIN: f64 = 1.1;
 pub fn estimate(planet: &Planet, settings: &Settings) -> u64 {
     let medium = planet.medium(&settings.wavelengths_nm);
     let wants = |layout| settings.layouts.contains(&layout);
-    let (compact, paper) = (wants(Layout::Compact), wants(Layout::Elek2010));
+    let full = wants(Layout::Compact) || wants(Layout::ThreeAtmosphere);
+    let paper = wants(Layout::Elek2010);
     let solve = |resolution, wanted| if wanted { Solve::of(&medium, resolution) } else { Solve::default() };
-    let full = solve(&Resolution::TABLES, compact);
-    let similar = solve(&Resolution::PAPER, paper || !compact);
+    let full_light = solve(&Resolution::TABLES, full);
+    let similar = solve(&Resolution::PAPER, paper || !full);
     let texels = texels(&medium, settings);
     let texel = TEXEL + CONTAINER * settings.storage.containers.len() as f64;
-    let solving = full.working.max(similar.working);
-    let filling = full.fields.max(similar.fields) + texel * texels.air + SPECTRAL * texels.spectral;
-    let counted = BASE + full.solution + similar.solution + solving.max(filling + texel * texels.water);
+    let solving = full_light.working.max(similar.working);
+    let filling = full_light.fields.max(similar.fields) + texel * texels.air + SPECTRAL * texels.spectral;
+    let counted = BASE + full_light.solution + similar.solution + solving.max(filling + texel * texels.water);
     (MARGIN * counted) as u64
 }
 
@@ -96,6 +98,9 @@ fn texels(medium: &Medium, settings: &Settings) -> Texels {
     if wants(Layout::Compact) {
         let sizes = settings.compact_sizes;
         air += of(&sizes.multiple) + of(&sizes.single) * groups(medium).len() as f64;
+    }
+    if wants(Layout::ThreeAtmosphere) {
+        air += 3.0 * of(&Bruneton::SIZE);
     }
     if wants(Layout::Elek2010) {
         air += of(&settings.elek2010_size);

@@ -17,6 +17,7 @@ pub mod settings;
 pub mod skies;
 mod spectral;
 pub mod tables;
+pub mod three_atmosphere;
 pub mod water;
 
 pub use pipeline::{Product, bake};

@@ -5,7 +5,9 @@ use super::palette::Palette;
 use super::settings::{Layout, Settings, Solver};
 use super::tables::Baked;
 use super::water::WaterTables;
-use super::{compact, describe, elek2010, extinction, pictures, report, skies, spectral, water};
+use super::{
+    compact, describe, elek2010, extinction, pictures, report, skies, spectral, three_atmosphere, water,
+};
 use crate::error::{Error, Result};
 use crate::export::manifest::Manifest;
 use crate::medium::Medium;
@@ -28,6 +30,10 @@ pub struct Product {
 const RESIDUAL_WARNING: f64 = 0.01;
 /// Error of the energy balance above which the bake warns.
 const BALANCE_WARNING: f64 = 3e-3;
+/// Error of the tables of a layout on 95 % of views by day above which the bake warns: five times that of the paper's.
+const TABLES_WARNING: f64 = 0.3;
+/// Median error by day of the paper's layout against the preset's own medium above which the bake warns.
+const MEDIUM_WARNING: f64 = 0.25;
 /// What messages call a bake that is in no folder yet.
 const IN_MEMORY: &str = "the bake in memory";
 
@@ -49,6 +55,12 @@ pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -
         files.extra.push(skies::file(&sample, &settings.wavelengths_nm)?);
     }
     let mut manifest = describe::manifest(planet, settings, &palette, &solved.full, &files);
+    if let Some(found) = &filled.three_atmosphere {
+        manifest.constants.extend(found.constants.clone());
+        let about = "parameters for the AtmosphereParameters of @takram/three-atmosphere";
+        let path = format!("{}/parameters.json", three_atmosphere::LAYOUT);
+        files.extra.push((path, about.into(), found.parameters.clone().into_bytes()));
+    }
     if let Some(waters) = &filled.waters {
         describe::add_waters(&mut manifest, &settings.waters.list, waters);
     }
@@ -87,10 +99,12 @@ struct Solved<'a> {
 }
 
 /// Tables of all layouts, and what was odd about them.
+#[derive(Default)]
 struct Filled {
     tables: Vec<Baked>,
     counts: Map<String, Value>,
     waters: Option<WaterTables>,
+    three_atmosphere: Option<three_atmosphere::Tables>,
 }
 
 impl<'a> Solved<'a> {
@@ -101,8 +115,8 @@ impl<'a> Solved<'a> {
         let paper = full.similarity();
         let wants = |layout| settings.layouts.contains(&layout);
         stage("solve");
-        let full_light =
-            wants(Layout::Compact).then(|| Solution::new(&full, &Resolution::TABLES, settings.orders));
+        let full_light = (wants(Layout::Compact) || wants(Layout::ThreeAtmosphere))
+            .then(|| Solution::new(&full, &Resolution::TABLES, settings.orders));
         stage("solve paper's medium");
         let paper_light = (wants(Layout::Elek2010) || full_light.is_none())
             .then(|| Solution::new(&paper, &Resolution::PAPER, settings.orders));
@@ -130,16 +144,26 @@ impl<'a> Solved<'a> {
     }
 
     fn fill(&self, palette: &Palette, stage: &mut dyn FnMut(&str)) -> Result<Filled> {
-        let mut filled = Filled { tables: Vec::new(), counts: Map::new(), waters: None };
+        let mut filled = Filled::default();
         if let (true, Some(light)) = (self.settings.layouts.contains(&Layout::Elek2010), &self.paper_light) {
             stage("elek2010 tables");
             self.fill_elek2010(light, palette, &mut filled)?;
         }
-        if let Some(light) = &self.full_light {
+        if let (true, Some(light)) = (self.settings.layouts.contains(&Layout::Compact), &self.full_light) {
             stage("compact tables");
             let (tables, negative) = compact::tables(&self.full, light, palette, self.settings.compact_sizes);
             filled.tables.extend(tables);
             filled.counts.insert("compact multiple scattering below 0, set to dark".into(), json!(negative));
+        }
+        if let (true, Some(light)) =
+            (self.settings.layouts.contains(&Layout::ThreeAtmosphere), &self.full_light)
+        {
+            stage("three-atmosphere tables");
+            let mut found = three_atmosphere::tables(self.planet, &self.full, light, palette)?;
+            filled.tables.append(&mut found.tables);
+            let negative = "three-atmosphere colours outside the gamut, set to 0";
+            filled.counts.insert(negative.into(), json!(found.negative));
+            filled.three_atmosphere = Some(found);
         }
         if !self.settings.waters.list.is_empty() {
             stage("water tables");
@@ -155,7 +179,7 @@ impl<'a> Solved<'a> {
         let (paper, settings) = (&self.paper, self.settings);
         let (tables, oddities) = match settings.solver {
             Solver::Moments => elek2010::tables(paper, light, palette, settings.elek2010_size),
-            Solver::Literal { samples } => super::literal::tables(paper, light, palette, settings, samples)?,
+            Solver::Literal { .. } => super::literal::tables(paper, light, palette, settings)?,
         };
         filled.tables.extend(tables);
         let groups = compact::groups(&self.full);
@@ -182,17 +206,23 @@ impl<'a> Solved<'a> {
         let mut out = Map::new();
         let truth = self.full_light.as_ref().map(|light| report::truths(&self.full, light));
         out.insert("colour".into(), report::colours(palette, truth.as_deref()));
-        if let (Some(light), Some(truth), Some(sky)) = (&self.full_light, &truth, &skies.compact) {
+        if let Some(light) = &self.full_light {
             out.insert("solver".into(), report::solver(&self.full, light));
+        }
+        if let (Some(truth), Some(sky)) = (&truth, &skies.compact) {
             out.insert("compact_against_direct_integration".into(), report::compact(sky, palette, truth));
+        }
+        if let (Some(truth), Some(sky)) = (&truth, &skies.three_atmosphere) {
+            let errors = report::in_rgb(sky, palette, truth, AerosolPhase::Preset);
+            out.insert("three_atmosphere_against_direct_integration".into(), errors);
         }
         if let (Some(light), Some(sky)) = (&self.paper_light, &skies.paper) {
             out.insert("paper_medium_solver".into(), report::solver(&self.paper, light));
             let own = report::truths(&self.paper, light);
-            let own = report::elek2010(sky, palette, &own, AerosolPhase::Isotropic);
+            let own = report::in_rgb(sky, palette, &own, AerosolPhase::Isotropic);
             out.insert("elek2010_against_its_own_medium".into(), own);
             if let Some(truth) = &truth {
-                let full = report::elek2010(sky, palette, truth, AerosolPhase::Preset);
+                let full = report::in_rgb(sky, palette, truth, AerosolPhase::Preset);
                 out.insert("elek2010_against_the_full_medium".into(), full);
             }
         }
@@ -212,6 +242,7 @@ impl<'a> Solved<'a> {
     fn warnings(&self, quality: &Map<String, Value>) -> Vec<String> {
         let mut out = self.planet.warnings.clone();
         out.extend(outside_vision(&self.settings.wavelengths_nm));
+        out.extend(few_wavelengths(&self.settings.wavelengths_nm));
         let waters = &self.settings.waters.list;
         out.extend(waters.iter().flat_map(|w| w.warnings.iter().map(|t| format!("{}: {t}", w.name))));
         for (name, light) in [("full", &self.full_light), ("paper's", &self.paper_light)] {
@@ -223,14 +254,47 @@ impl<'a> Solved<'a> {
                 out.push(format!("energy balance of the {key}: {:+.2} % of the light", 100.0 * error));
             }
         }
+        out.extend(coarse_tables(quality));
         out
     }
+}
+
+/// Warnings where the tables of a layout are so coarse that they miss the light of their own medium by day.
+fn coarse_tables(quality: &Map<String, Value>) -> Vec<String> {
+    let own = [
+        ("compact", &["compact_against_direct_integration", "day", "rgb"][..]),
+        ("elek2010", &["elek2010_against_its_own_medium", "day"][..]),
+    ];
+    let error = |path: &[&str]| {
+        let found = path[1..].iter().try_fold(quality.get(path[0])?, |at, key| at.get(key))?;
+        found["p95"].as_f64().filter(|e| *e > TABLES_WARNING)
+    };
+    let warning = |(layout, path): (&str, &[&str])| {
+        error(path).map(|e| {
+            let percent = if e < 100.0 { format!("{:.0} %", 100.0 * e) } else { "any measure".into() };
+            format!(
+                "layout {layout}: one in twenty views by day is off by more than {percent}; --size takes larger tables"
+            )
+        })
+    };
+    let mut out: Vec<String> = own.into_iter().filter_map(warning).collect();
+    let simplified =
+        quality.get("elek2010_against_the_full_medium").and_then(|q| q["day"]["median"].as_f64());
+    if let Some(error) = simplified.filter(|e| *e > MEDIUM_WARNING) {
+        out.push(format!(
+            "layout elek2010: its isotropic haze is not this planet's: half of the views by day are off by more than \
+             {:.0} %; layout compact holds the medium as it is",
+            100.0 * error
+        ));
+    }
+    out
 }
 
 /// The bake as its readers will see it.
 struct Skies {
     compact: Option<Sky>,
     paper: Option<Sky>,
+    three_atmosphere: Option<Sky>,
     waters: Vec<WaterSky>,
 }
 
@@ -248,11 +312,13 @@ impl Skies {
             waters: settings.waters.list.iter().map(water).collect::<Result<_>>()?,
             compact: open(Layout::Compact)?,
             paper: open(Layout::Elek2010)?,
+            three_atmosphere: open(Layout::ThreeAtmosphere)?,
         })
     }
 
     fn best(&self) -> &Sky {
-        self.compact.as_ref().or(self.paper.as_ref()).expect("a layout was baked")
+        let all = [&self.compact, &self.paper, &self.three_atmosphere];
+        all.into_iter().flatten().next().expect("a layout was baked")
     }
 
     fn named<'a>(&'a self, waters: &'a [Water]) -> Vec<(&'a str, &'a WaterSky)> {
@@ -270,6 +336,14 @@ fn outside_vision(nm: &[f64]) -> Option<String> {
              of the preset are held at their ends where they are not given",
             nm.len()
         )
+    })
+}
+
+/// A warning where there are fewer wavelengths than colours have dimensions.
+fn few_wavelengths(nm: &[f64]) -> Option<String> {
+    (nm.len() < 3).then(|| {
+        let (n, s) = (nm.len(), if nm.len() == 1 { "" } else { "s" });
+        format!("{n} wavelength{s}: colours need three, those of this bake are of one kind of sky; radiance is exact")
     })
 }
 

@@ -61,8 +61,8 @@ pub fn compact(sky: &Sky, palette: &Palette, truths: &[Truth]) -> Value {
     Value::Object(out)
 }
 
-/// Errors of the paper's layout as RGB, by region, against a medium's truth.
-pub fn elek2010(sky: &Sky, palette: &Palette, truths: &[Truth], phase: AerosolPhase) -> Value {
+/// Errors of a layout in RGB, by region, against a medium's truth.
+pub fn in_rgb(sky: &Sky, palette: &Palette, truths: &[Truth], phase: AerosolPhase) -> Value {
     let mut out = Map::new();
     for truth in truths {
         let lit = truth.views.iter().filter(|(_, light)| light.iter().any(|&v| v > DARK));

@@ -3,6 +3,7 @@
 use super::compact::Sizes;
 use super::water::Waters;
 use crate::export::container::Container;
+use crate::methods::literal::Gather;
 use crate::spectrum::{ColourSpace, Rgb, White};
 use crate::table::Elek2010;
 use crate::transport::slab::WaterOrders;
@@ -14,6 +15,8 @@ use serde_json::{Value, json};
 pub enum Layout {
     Elek2010,
     Compact,
+    /// Files of the npm package @takram/three-atmosphere
+    ThreeAtmosphere,
 }
 
 impl Layout {
@@ -21,6 +24,7 @@ impl Layout {
         match self {
             Layout::Elek2010 => super::elek2010::LAYOUT,
             Layout::Compact => super::compact::LAYOUT,
+            Layout::ThreeAtmosphere => super::three_atmosphere::LAYOUT,
         }
     }
 }
@@ -31,7 +35,7 @@ pub enum Solver {
     /// Angular moments of the radiance.
     Moments,
     /// Algorithm 1 as it is written, with this many samples an integral.
-    Literal { samples: usize },
+    Literal { samples: usize, gather: Gather },
 }
 
 /// In which files tables are stored.
@@ -98,7 +102,12 @@ impl Settings {
         };
         let solver = match self.solver {
             Solver::Moments => json!("moments"),
-            Solver::Literal { samples } => json!({ "literal": { "samples": samples } }),
+            Solver::Literal { samples, gather: Gather::PerPoint } => {
+                json!({ "literal": { "samples": samples } })
+            }
+            Solver::Literal { samples, gather } => {
+                json!({ "literal": { "samples": samples, "gather": format!("{gather:?}") } })
+            }
         };
         json!({
             "layouts": self.layouts.iter().map(|l| l.name()).collect::<Vec<_>>(),

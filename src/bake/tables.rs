@@ -1,7 +1,8 @@
 //! A finished table: its samples in file order and what the manifest says of it.
 
+use super::three_atmosphere;
 use crate::export::atlas::{Atlas, Samples};
-use crate::export::manifest::{Axis, ChannelInfo, Encoding, Origin, Packing, Precision, Table};
+use crate::export::manifest::{Axis, ChannelInfo, Encoding, Packing, Precision, Table};
 use crate::table::{AxisFormula, Elek2010};
 
 /// A table of up to four channels, texels in the order x, y, z, w with x fastest (z and w share the slices).
@@ -30,16 +31,26 @@ impl Channel {
 }
 
 impl Baked {
-    /// The picture to store, in half floats.
+    /// The picture to store, in half floats: x and y are the first two axes, and slices lie in a grid, but for the
+    /// layout three-atmosphere.
     pub fn atlas(&self) -> Atlas {
-        let size = |k: usize| self.axes.get(k).map_or(1, |a| a.size);
-        let (width, height, slices) = (size(0), size(1), size(2) * size(3));
         let name = format!("{}/{}", self.layout, self.name);
-        let mut atlas = Atlas::new(name, [width, height, slices]);
+        let across = self.across();
+        let sides = [0..across, across..across + 1, across + 1..4].map(|axes| self.texels_of(axes));
+        let mut atlas = if self.layout == three_atmosphere::LAYOUT {
+            Atlas::new(name, sides).in_a_strip_from_the_bottom()
+        } else {
+            Atlas::new(name, sides)
+        };
         for (k, c) in self.channels.iter().enumerate() {
             atlas = atlas.with(c.name.clone(), Samples::half(self.texels.iter().map(|t| f64::from(t[k]))));
         }
         atlas
+    }
+
+    /// Texels along some of the axes together.
+    fn texels_of(&self, axes: std::ops::Range<usize>) -> usize {
+        axes.map(|k| self.axes.get(k).map_or(1, |a| a.size)).product()
     }
 
     /// What the manifest says, once the file is written.
@@ -72,7 +83,7 @@ impl Baked {
                 rows: atlas.rows(),
                 slice_order: "row-major".into(),
                 slice_index: self.slice_index(),
-                origin: Origin::TopLeft,
+                origin: atlas.origin,
             },
             encoding: self.encoding.clone(),
             channels,
@@ -80,8 +91,13 @@ impl Baked {
         }
     }
 
+    /// How many axes x is made of: the reader of three-atmosphere wants all but the last two.
+    fn across(&self) -> usize {
+        if self.layout == three_atmosphere::LAYOUT { self.axes.len().saturating_sub(2).max(1) } else { 1 }
+    }
+
     fn slice_index(&self) -> String {
-        match self.axes.get(2..).unwrap_or_default() {
+        match self.axes.get(self.across() + 1..).unwrap_or_default() {
             [] => "0".into(),
             [z] => z.name.clone(),
             [z, w, ..] => format!("{} * {} + {}", w.name, z.size, z.name),

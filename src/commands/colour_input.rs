@@ -28,7 +28,8 @@ pub fn read(path: Option<&Path>) -> Result<Vec<Named>> {
     }
 }
 
-fn parse(file: &Path, text: &str) -> Result<Vec<Named>> {
+/// [`read`] of a text; `file` is for messages only.
+pub fn parse(file: &Path, text: &str) -> Result<Vec<Named>> {
     let mut reader =
         csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
     let header = reader.headers().map_err(|e| Error::file(file, e))?.clone();

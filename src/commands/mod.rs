@@ -1,8 +1,9 @@
 //! One file a command: arguments in, results on standard output, talk on standard error.
 
 pub mod bake;
+pub mod chart;
 pub mod colour;
-mod colour_input;
+pub mod colour_input;
 pub mod diff;
 mod machine;
 mod memory;

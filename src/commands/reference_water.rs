@@ -2,7 +2,6 @@
 
 use super::machine::with_threads;
 use super::reference::Args;
-use super::sample_water::view;
 use crate::error::{Error, Result};
 use crate::medium::Medium;
 use crate::points::{Answer, Point, write_answers};
@@ -24,7 +23,8 @@ pub fn run(args: &Args, name: &str, air: &Medium, points: &[Point]) -> Result<()
         return Err(Error::Argument(format!("--depth {depth}: must be over 0 and at most {most} m")));
     }
     let media = water.medium(&args.wavelengths);
-    let views = points.iter().map(|p| view(air.ground_radius, depth, p)).collect::<Result<Vec<_>>>()?;
+    let views =
+        points.iter().map(|p| WaterView::meet(air.ground_radius, depth, p)).collect::<Result<Vec<_>>>()?;
     let paths = args.paths.unwrap_or(PATHS);
     let trace = |w: usize| -> Vec<(f64, f64)> {
         let (tracer, water) = (Tracer::new(air, w), WaterTracer::new(&media, w, depth));

@@ -34,7 +34,7 @@ pub fn run(args: &Args, name: &str, manifest: &Manifest, planet: &Planet, points
     }
     let meet = |p: &Point| match args.observer_depth {
         Some(_) => Ok(WaterView { depth, mu: p.mu, mu_s: p.mu_s }),
-        None => view(planet.ground_radius, depth, p).map(|(view, _)| view),
+        None => WaterView::meet(planet.ground_radius, depth, p).map(|(view, _)| view),
     };
     let views = points.iter().map(meet).collect::<Result<Vec<_>>>()?;
     let (nm, light) = if args.exact {
@@ -51,27 +51,6 @@ pub fn run(args: &Args, name: &str, manifest: &Manifest, planet: &Planet, points
     let mut out = Vec::new();
     spectral(&mut out, args, planet, points, &nm, &light).map_err(|e| Error::machine("the answer", e))?;
     print(&String::from_utf8_lossy(&out))
-}
-
-/// The view where it meets the water, down the ray from an observer above, angles there; and the azimuth between
-/// view and sun there, rad. Errors: the ray never meets it.
-pub(super) fn view(ground: f64, depth: f64, p: &Point) -> Result<(WaterView, f64)> {
-    let r = ground + p.altitude;
-    let across2 = r * r * (1.0 - p.mu * p.mu);
-    if p.mu >= 0.0 || across2 > ground * ground {
-        let reason = format!("mu_view {} at {} m never meets the water: look down", p.mu, p.altitude);
-        return Err(Error::Argument(format!("--water {reason}")));
-    }
-    if p.altitude == 0.0 {
-        return Ok((WaterView { depth, mu: -p.mu, mu_s: p.mu_s }, p.azimuth_deg.to_radians()));
-    }
-    let cosine = (1.0 - across2 / (ground * ground)).max(0.0).sqrt();
-    let length = p.altitude * (r + ground) / (-r * p.mu + ground * cosine);
-    let mu_s = ((r * p.mu_s + length * p.nu()) / ground).clamp(-1.0, 1.0);
-    let sines = ((1.0 - cosine * cosine) * (1.0 - mu_s * mu_s)).sqrt();
-    // The angle between view and sun is the same everywhere on the ray.
-    let azimuth = if sines > 0.0 { (p.nu() + cosine * mu_s) / sines } else { 1.0 };
-    Ok((WaterView { depth, mu: cosine, mu_s }, libm::acos(azimuth.clamp(-1.0, 1.0))))
 }
 
 /// Solved afresh, air and water, `[view][wavelength]`.

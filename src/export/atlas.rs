@@ -1,5 +1,6 @@
 //! A table ready for a file: a volume whose slices lie side by side in one picture.
 
+use super::manifest::Origin;
 use crate::error::{Error, Result};
 use half::f16;
 use std::collections::BTreeMap;
@@ -14,6 +15,8 @@ pub struct Atlas {
     pub height: usize,
     pub slices: usize,
     pub columns: usize,
+    /// The corner where slice 0 and texel (0, 0) of each slice lie; bottom-left turns the whole picture upside down.
+    pub origin: Origin,
     /// In any order; files list them alphabetically, as EXR demands.
     pub channels: Vec<Channel>,
     /// Further header attributes; the packing is added by the writer.
@@ -115,9 +118,15 @@ impl Atlas {
             height,
             slices,
             columns: (1..=slices.max(1)).find(|c| c * c >= slices).unwrap_or(1),
+            origin: Origin::TopLeft,
             channels: Vec::new(),
             attributes: BTreeMap::new(),
         }
+    }
+
+    /// The same with all slices in one column and the whole picture upside down.
+    pub fn in_a_strip_from_the_bottom(self) -> Self {
+        Atlas { columns: 1, origin: Origin::BottomLeft, ..self }
     }
 
     /// Adds a channel; its samples are ordered `[slice][y][x]`.
@@ -129,6 +138,24 @@ impl Atlas {
     /// Rows of the grid of slices; the last may be partly empty (zeros in the file).
     pub fn rows(&self) -> usize {
         self.slices.div_ceil(self.columns.max(1))
+    }
+
+    /// The slice that lies at a place of the grid, counted row by row from the top left; none of the table's where it
+    /// is no less than `slices`.
+    pub fn slice_at(&self, place: usize) -> usize {
+        let (column, row) = (place % self.columns, place / self.columns);
+        match self.origin {
+            Origin::TopLeft => place,
+            Origin::BottomLeft => (self.rows() - 1 - row) * self.columns + column,
+        }
+    }
+
+    /// The y of a tile's line, counted from its top.
+    pub fn y_of_line(&self, line: usize) -> usize {
+        match self.origin {
+            Origin::TopLeft => line,
+            Origin::BottomLeft => self.height - 1 - line,
+        }
     }
 
     /// Samples in one slice of one channel.

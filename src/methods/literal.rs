@@ -24,9 +24,11 @@ use crate::lanes::{Lanes, WIDTH};
 use crate::medium::Medium;
 use crate::table::{Array, Elek2010, texel};
 use air::{AEROSOL, Air, GAS};
+use gather::Gathered;
 use ray::Ray;
 use rayon::prelude::*;
 
+pub use air::{altitude_along, radius_along};
 pub use gather::Gather;
 
 /// How finely, and how far, Algorithm 1 is run.
@@ -89,11 +91,12 @@ pub fn work(settings: &Settings) -> f64 {
     let samples = settings.samples as f64;
     let texels = altitudes * views * suns * azimuths;
     let directions = samples * samples;
-    let fetched = match settings.gather {
-        Gather::PerPoint => altitudes * suns * directions,
-        Gather::PerTexel => texels * directions,
+    let (fetched, gathered) = match settings.gather {
+        Gather::PerPoint => (altitudes * suns * directions, texels * directions),
+        Gather::PerTexel => (texels * directions, texels * directions),
+        Gather::Mean => (altitudes * suns * directions, 0.0),
+        Gather::AtSample => (texels * samples * directions, texels * samples * directions),
     };
-    let gathered = texels * directions;
     let ambient = suns * directions;
     let marched = texels * samples;
     marched + (settings.orders as f64 - 1.0) * (fetched + gathered + ambient + marched)
@@ -137,7 +140,7 @@ impl Solver<'_> {
         let mut ts_delta = Array::zero(size);
         self.march(&mut ts, &mut ts_delta, &|row| self.first_order(row)); // Eq. 7
         let mut ta = vec![Lanes::ZERO; size[2]];
-        let mut tg = Array::zero(size);
+        let mut tg = Gathered::new(self.settings.gather, size, self.settings.samples);
         let mut order_totals = vec![total(&ts_delta)];
         progress(1);
         for k in 2..=self.settings.orders {
@@ -195,7 +198,7 @@ impl Solver<'_> {
     }
 
     /// I_S^(k) of one row: Eq. 12 from TG and TAΔ of order k − 1, with A under gas.
-    fn next_order(&self, row: Row, tg: &Array<[Lanes; 2], 4>, ta_delta: &[Lanes]) -> Vec<[Lanes; 2]> {
+    fn next_order(&self, row: Row, tg: &Gathered, ta_delta: &[Lanes]) -> Vec<[Lanes; 2]> {
         isa::run(
             #[inline(always)]
             || {
@@ -266,11 +269,10 @@ impl Solver<'_> {
 
     /// The integral of Eq. 12, of gas and aerosol.
     #[inline(always)]
-    fn in_scattered(&self, ray: &Ray, mu_s: f64, nu: f64, tg: &Array<[Lanes; 2], 4>) -> [Lanes; 2] {
+    fn in_scattered(&self, ray: &Ray, mu_s: f64, nu: f64, tg: &Gathered) -> [Lanes; 2] {
         let mut sum = [Lanes::ZERO; 2];
         for sample in &ray.samples {
-            if let Some(place) = ray.place(&self.map, sample, mu_s, nu) {
-                let gathered = tg.interpolate(&place);
+            if let Some(gathered) = self.gathered_at(tg, ray, sample, mu_s, nu) {
                 sum[GAS] += sample.strength[GAS] * gathered[GAS];
                 sum[AEROSOL] += sample.strength[AEROSOL] * gathered[AEROSOL];
             }

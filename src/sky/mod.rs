@@ -5,6 +5,7 @@
 mod check;
 mod compact;
 mod elek2010;
+mod three_atmosphere;
 mod volume;
 pub mod water;
 
@@ -16,6 +17,7 @@ use compact::Compact;
 use elek2010::Elek2010Sky;
 use std::collections::BTreeMap;
 use std::path::Path;
+use three_atmosphere::ThreeAtmosphere;
 use volume::{Plane, Volume};
 
 /// Which part of the light is asked for.
@@ -40,6 +42,7 @@ pub enum AerosolPhase {
 pub enum Sky {
     Compact(Compact),
     Elek2010(Elek2010Sky),
+    ThreeAtmosphere(ThreeAtmosphere),
 }
 
 /// What the answers of a layout are.
@@ -72,6 +75,7 @@ impl Sky {
         match layout {
             "compact" => Ok(Sky::Compact(Compact::new(&source)?)),
             "elek2010" => Ok(Sky::Elek2010(Elek2010Sky::new(&source)?)),
+            "three-atmosphere" => Ok(Sky::ThreeAtmosphere(ThreeAtmosphere::new(&source)?)),
             other => Err(Error::Argument(format!("layout {other}: not one that this tool can read"))),
         }
     }
@@ -79,7 +83,7 @@ impl Sky {
     pub fn channels(&self) -> Channels {
         match self {
             Sky::Compact(sky) => Channels::Wavelengths(sky.wavelengths_nm.clone()),
-            Sky::Elek2010(_) => Channels::Rgb,
+            Sky::Elek2010(_) | Sky::ThreeAtmosphere(_) => Channels::Rgb,
         }
     }
 
@@ -88,6 +92,7 @@ impl Sky {
         match self {
             Sky::Compact(sky) => sky.radiance(point, component),
             Sky::Elek2010(sky) => sky.radiance(point, component, phase).to_vec(),
+            Sky::ThreeAtmosphere(sky) => sky.radiance(point, component).to_vec(),
         }
     }
 
@@ -96,6 +101,7 @@ impl Sky {
         match self {
             Sky::Compact(sky) => sky.rgb(&sky.radiance(point, component)),
             Sky::Elek2010(sky) => sky.radiance(point, component, AerosolPhase::Preset),
+            Sky::ThreeAtmosphere(sky) => sky.radiance(point, component),
         }
     }
 }

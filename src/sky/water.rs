@@ -5,6 +5,7 @@ use super::{Component, multiply};
 use crate::error::{Error, Result};
 use crate::export::Atlas;
 use crate::export::manifest::{Manifest, Table};
+use crate::points::Point;
 use crate::table::{EvenCosine, Texel, WaterAxes, texel};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -68,6 +69,32 @@ pub struct WaterView {
     /// the zenith angle of the direction looked into, in the water.
     pub mu: f64,
     pub mu_s: f64,
+}
+
+impl WaterView {
+    /// The view where it meets the water, down the ray from an observer above a planet of this radius (m), angles
+    /// there; and the azimuth between view and sun there, rad.
+    ///
+    /// # Errors
+    /// `Argument` where the ray never meets it.
+    pub fn meet(ground: f64, depth: f64, p: &Point) -> Result<(WaterView, f64)> {
+        let r = ground + p.altitude;
+        let across2 = r * r * (1.0 - p.mu * p.mu);
+        if p.mu >= 0.0 || across2 > ground * ground {
+            let reason = format!("mu_view {} at {} m never meets the water: look down", p.mu, p.altitude);
+            return Err(Error::Argument(format!("--water {reason}")));
+        }
+        if p.altitude == 0.0 {
+            return Ok((WaterView { depth, mu: -p.mu, mu_s: p.mu_s }, p.azimuth_deg.to_radians()));
+        }
+        let cosine = (1.0 - across2 / (ground * ground)).max(0.0).sqrt();
+        let length = p.altitude * (r + ground) / (-r * p.mu + ground * cosine);
+        let mu_s = ((r * p.mu_s + length * p.nu()) / ground).clamp(-1.0, 1.0);
+        let sines = ((1.0 - cosine * cosine) * (1.0 - mu_s * mu_s)).sqrt();
+        // The angle between view and sun is the same everywhere on the ray.
+        let azimuth = if sines > 0.0 { (p.nu() + cosine * mu_s) / sines } else { 1.0 };
+        Ok((WaterView { depth, mu: cosine, mu_s }, libm::acos(azimuth.clamp(-1.0, 1.0))))
+    }
 }
 
 impl WaterSky {

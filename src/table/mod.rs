@@ -2,12 +2,14 @@
 
 mod array;
 mod bends;
+mod bruneton;
 mod elek2010;
 mod sun_curve;
 mod water;
 
 pub use array::{Array, Element, Texel, texel};
 pub use bends::Bends;
+pub use bruneton::Bruneton;
 pub use elek2010::{AxisFormula, Elek2010};
 pub use sun_curve::SunCurve;
 pub use water::{EvenCosine, WaterAxes};

@@ -58,17 +58,21 @@ pub struct Pairs {
 
 impl Pairs {
     pub fn new(mu_s: &[f64], cos_azimuth: &[f64]) -> Self {
+        let all = mu_s.iter().flat_map(|&m| cos_azimuth.iter().map(move |&c| (m, c)));
+        Pairs { sun_count: mu_s.len(), azimuth_count: cos_azimuth.len(), ..Self::listed(all) }
+    }
+
+    /// Any pairs of a sun zenith cosine and the cosine of an azimuth, each for itself.
+    pub fn listed(pairs: impl Iterator<Item = (f64, f64)>) -> Self {
         let (mut cosines, mut across) = (Vec::new(), Vec::new());
-        for &m in mu_s {
-            for &c in cos_azimuth {
-                cosines.push(m as f32);
-                across.push(((1.0 - m * m).max(0.0).sqrt() * c) as f32);
-            }
+        for (m, c) in pairs {
+            cosines.push(m as f32);
+            across.push(((1.0 - m * m).max(0.0).sqrt() * c) as f32);
         }
         let chunks = cosines.chunks(CHUNK).zip(across.chunks(CHUNK));
         let fill = |v: &[f32]| std::array::from_fn(|k| v[if k < v.len() { k } else { 0 }]);
         let chunks = chunks.map(|(m, a)| PairChunk { mu_s: fill(m), across: fill(a) }).collect();
-        Pairs { sun_count: mu_s.len(), azimuth_count: cos_azimuth.len(), mu_s: cosines, across, chunks }
+        Pairs { sun_count: cosines.len(), azimuth_count: 1, mu_s: cosines, across, chunks }
     }
 
     /// Number of pairs.

@@ -5,7 +5,7 @@
 //! once is integrated apart with its exact phase function, because its shadow edges and peaks are sharp.
 //! Knows no preset, file or colour. All radiances are per unit solar irradiance normal to the beam, 1/sr.
 
-mod azimuth;
+pub(crate) mod azimuth;
 pub mod balance;
 mod bundles;
 
@@ -24,7 +24,7 @@ mod operator;
 mod optics;
 mod path;
 mod precondition;
-mod quadrature;
+pub(crate) mod quadrature;
 mod rays;
 mod refined;
 pub mod slab;

@@ -5,13 +5,14 @@ use clap::Args;
 use std::fs;
 use tyndall::commands;
 
-const COMMANDS: [&str; 12] = [
+const COMMANDS: [&str; 13] = [
     "bake",
     "diff",
     "recolour",
     "sample",
     "reference",
     "verify",
+    "chart",
     "colour",
     "presets",
     "presets list",
@@ -41,6 +42,7 @@ fn parse(example: &str) -> Result<(), clap::Error> {
         "diff" => commands::diff::Args::augment_args(named),
         "recolour" => commands::recolour::Args::augment_args(named),
         "verify" => commands::verify::Args::augment_args(named),
+        "chart" => commands::chart::Args::augment_args(named),
         "colour" => commands::colour::Args::augment_args(named),
         "presets" => commands::presets::Args::augment_args(named),
         other => panic!("{example}: {other} is not tested"),
@@ -89,7 +91,7 @@ fn examples_run() {
     }
     for example in COMMANDS.iter().flat_map(|command| examples(command)) {
         let words: Vec<&str> = example.split_whitespace().skip(1).collect();
-        if ["bake", "reference"].contains(&words[0]) {
+        if ["bake", "reference", "chart"].contains(&words[0]) {
             continue;
         }
         let done = ran(command().args(&words).current_dir(here).output().unwrap());

@@ -87,6 +87,26 @@ fn a_reader_of_the_picture_finds_each_sample_at_its_promised_place() {
     }
 }
 
+/// A strip from the bottom: the file's last line is the first of slice 0, its first line the last of the last slice,
+/// as readers want that turn pictures round. It comes back as it went in.
+#[test]
+fn a_strip_from_the_bottom_is_upside_down_in_the_file_only() {
+    use exr::prelude::*;
+    let values = || (0..24).map(|k| k as f64);
+    let atlas = Atlas::new(FILE, [2, 3, 4]).in_a_strip_from_the_bottom().with("R", Samples::half(values()));
+    let bytes = to_exr_bytes(&atlas).unwrap();
+    let back = from_exr_bytes(Path::new(FILE), &bytes).unwrap();
+    assert_eq!(
+        (back.origin, bits(&back.channels[0].samples)),
+        (atlas.origin, bits(&Samples::half(values())))
+    );
+    let image = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
+    let image = image.all_attributes().from_buffered(std::io::Cursor::new(bytes)).unwrap();
+    let found: Vec<f32> = image.layer_data.channel_data.list[0].sample_data.values_as_f32().collect();
+    assert_eq!(image.layer_data.size, Vec2(2, 12));
+    assert_eq!((&found[..4], &found[22..]), (&[22.0, 23.0, 20.0, 21.0][..], &[0.0, 1.0][..]));
+}
+
 /// Same input, same bytes: over runs and thread counts.
 #[test]
 fn bytes_do_not_depend_on_run_or_threads() {

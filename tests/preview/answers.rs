@@ -23,7 +23,7 @@ fn views(count: u32, height: f64) -> Vec<[f64; 4]> {
 }
 
 /// The largest difference over the view's brightest channel, and the view.
-fn worst(a: &[Vec<f64>], b: &[Vec<f64>]) -> (f64, usize) {
+pub fn worst(a: &[Vec<f64>], b: &[Vec<f64>]) -> (f64, usize) {
     let brightest = b.iter().flatten().fold(0.0, |m: f64, v| m.max(*v));
     let of_view = |(a, b): (&Vec<f64>, &Vec<f64>)| {
         // Less than the night glows by itself (2e-8 of the day) is no light; there logarithms fall by twenty a texel.

@@ -11,12 +11,16 @@ const WIDTH: usize = 96;
 const HEIGHT: usize = 54;
 
 /// A name, and what is drawn.
-const PICTURES: [(&str, &str); 5] = [
+const PICTURES: [(&str, &str); 6] = [
     ("noon", "--sun 55 --azimuth 120 --exposure 14"),
     ("sunset", "--sun 3 --exposure 12.5"),
     ("twilight", "--sun -4 --exposure 5 --tone-mapping paper"),
     ("height", "--altitude 10000 --pitch -4 --sun 25 --azimuth 50 --exposure 13.5"),
     ("orbit", "--camera orbit --sun 35 --exposure 13.5"),
+    (
+        "water",
+        "--water tropical --depth 3 --altitude 300 --field 80 --pitch -28 --sun 40 --azimuth 25 --exposure 13",
+    ),
 ];
 
 fn folder() -> PathBuf {
@@ -82,7 +86,7 @@ fn golden_pictures_are_drawn_again() {
     assert!(!update, "golden pictures were drawn anew: look at them, commit them, and run again");
 }
 
-/// The tolerance is tight: a picture 2 % brighter is refused, and so is a star one degree higher.
+/// The tolerance is tight: a picture 2 % brighter is refused, and so are a star one degree higher and water 20 cm deeper.
 #[test]
 fn a_small_error_is_seen() {
     if !gpu() {
@@ -92,6 +96,8 @@ fn a_small_error_is_seen() {
         ("noon", "--exposure 14", "--exposure 13.9714"),
         ("height", "--exposure 13.5", "--exposure 13.4714"),
         ("orbit", "--sun 35", "--sun 36"),
+        ("water", "--exposure 13", "--exposure 12.9714"),
+        ("water", "--depth 3", "--depth 3.2"),
     ] {
         let arguments = PICTURES.iter().find(|p| p.0 == name).unwrap().1;
         let changed = arguments.replace(right, wrong);

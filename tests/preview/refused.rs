@@ -80,6 +80,7 @@ fn wrong_files_are_named() {
 #[test]
 fn wrong_arguments_are_named() {
     for (line, word) in [
+        ("--size 0x0", "--size"),
         ("--size 0x10", "--size"),
         ("--size 10", "--size"),
         ("--sun 91", "--sun"),
@@ -102,7 +103,31 @@ fn what_does_not_fit_is_named() {
     }
     refused(&draw(Path::new(earth()), &["--size", "32768x32768"]), 2, &["--size 32768x32768", "pixels"]);
     refused(&draw(Path::new(earth()), &["--g", "0.5"]), 2, &["--g", "elek2010"]);
+    let water = |bake: &str, line: &str| draw(Path::new(bake), &line.split(' ').collect::<Vec<_>>());
+    refused(&water(earth(), "--water muddy"), 2, &["--water muddy", "no waters", "--waters"]);
+    refused(&water(wet(), "--water algae"), 2, &["--water algae", "clear-ocean, muddy"]);
+    refused(&water(wet(), "--water muddy --depth 101"), 2, &["--depth 101", "muddy", "0 to 100 m"]);
+    refused(&water(wet(), "--water muddy --depth -1"), 2, &["--depth -1", "0 to 100 m"]);
     refused(&preview(&[earth(), "--headless"]), 2, &["--out"]);
     let nowhere = preview(&[earth(), "--headless", "--size", "8x8", "--out", "/nowhere/x.png"]);
     refused(&nowhere, 3, &["/nowhere/x.png"]);
+}
+
+/// A device that is lost, whatever is done with it: the machine's fault, in one line that says so. (Destroyed on purpose;
+/// the driver's word and this one come by the same callback.)
+#[test]
+fn a_lost_device_is_told() {
+    if !gpu() {
+        return;
+    }
+    for more in [&["--relief"][..], &["--method", "march"], &["--layout", "elek2010"]] {
+        let mut all = vec!["--size", "16x9", "--lose-device"];
+        all.extend(more);
+        refused(&draw(Path::new(earth()), &all), 3, &["GPU: the device was lost"]);
+    }
+    let bench = [earth(), "--bench", "--size", "16x9", "--frames", "2", "--lose-device"];
+    refused(&preview(&bench), 3, &["GPU: the device was lost"]);
+    let dir = tempfile::tempdir().unwrap();
+    let points = write_points(dir.path(), &[[0.0, 1.0, 1.0, 0.0]]);
+    refused(&preview(&[earth(), "--points", &points, "--lose-device"]), 3, &["GPU: the device was lost"]);
 }

@@ -21,10 +21,10 @@ pub fn tyndall(arguments: &[&str]) -> Ran {
     ran(Command::new(env!("CARGO_BIN_EXE_tyndall")).args(arguments).output().unwrap())
 }
 
-/// Mesa's layer that chooses a device is left out: without a desktop session it talks on stderr.
+/// As without a desktop session, where Mesa's layer that chooses a device would talk on stderr.
 pub fn preview_command() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tyndall-preview"));
-    command.env("NODEVICE_SELECT", "1");
+    command.env_remove("XDG_RUNTIME_DIR");
     command
 }
 
@@ -33,11 +33,11 @@ pub fn preview(arguments: &[&str]) -> Ran {
 }
 
 /// Tables coarse enough for a bake of a second, each axis of another size so that none can stand for another.
-fn bake(preset: &str, orders: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("preview-{orders}"));
+fn bake(preset: &str, orders: &str, waters: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("preview-{orders}-{waters}"));
     let line = "--quiet --wavelengths 5 --size elek2010=12x32x16x5 --size compact=9x20x18x5 \
-                --size compact-single=10x24x20x6 --out";
-    let mut arguments = vec!["bake", preset, "--orders", orders];
+                --size compact-single=10x24x20x6 --size water=14x18x22 --out";
+    let mut arguments = vec!["bake", preset, "--orders", orders, "--waters", waters];
     arguments.extend(line.split_whitespace());
     arguments.push(folder.to_str().unwrap());
     let done = tyndall(&arguments);
@@ -48,19 +48,25 @@ fn bake(preset: &str, orders: &str) -> PathBuf {
 /// A bake of `earth`: two groups that scatter, one that only absorbs.
 pub fn earth() -> &'static str {
     static EARTH: OnceLock<PathBuf> = OnceLock::new();
-    EARTH.get_or_init(|| bake("earth", "3")).to_str().unwrap()
+    EARTH.get_or_init(|| bake("earth", "3", "none")).to_str().unwrap()
 }
 
 /// `earth` with light scattered once.
 pub fn earth_once() -> &'static str {
     static EARTH: OnceLock<PathBuf> = OnceLock::new();
-    EARTH.get_or_init(|| bake("earth", "1")).to_str().unwrap()
+    EARTH.get_or_init(|| bake("earth", "1", "none")).to_str().unwrap()
 }
 
 /// A bake of `mars`: another radius, dust thicker than the gas.
 pub fn mars() -> &'static str {
     static MARS: OnceLock<PathBuf> = OnceLock::new();
-    MARS.get_or_init(|| bake("mars", "3")).to_str().unwrap()
+    MARS.get_or_init(|| bake("mars", "3", "none")).to_str().unwrap()
+}
+
+/// `mars` with a clear and a thick water.
+pub fn wet() -> &'static str {
+    static WET: OnceLock<PathBuf> = OnceLock::new();
+    WET.get_or_init(|| bake("mars", "3", "clear-ocean,muddy")).to_str().unwrap()
 }
 
 /// Whether there is a driver; said once where there is none.
@@ -111,9 +117,19 @@ pub fn shader(bake: &str, layout: &str, points: &[[f64; 4]], more: &[&str]) -> V
     arguments.extend(more);
     let done = preview(&arguments);
     assert_eq!(done.code, Some(0), "{}", done.err);
-    let answers = numbers(&done.out, layout);
+    // Of waters, wavelengths in both layouts.
+    let answers = numbers(&done.out, if more.contains(&"--water") { "compact" } else { layout });
     assert_eq!(answers.len(), points.len());
     answers
+}
+
+/// What `tyndall sample` answers of a water.
+pub fn sample_water(bake: &str, water: &str, depth: &str, points: &[[f64; 4]]) -> Vec<Vec<f64>> {
+    let dir = tempfile::tempdir().unwrap();
+    let path = write_points(dir.path(), points);
+    let done = tyndall(&["sample", bake, "--points", &path, "--water", water, "--depth", depth]);
+    assert_eq!(done.code, Some(0), "{}", done.err);
+    numbers(&done.out, "compact")
 }
 
 /// What `tyndall sample` answers.
@@ -127,7 +143,10 @@ pub fn sample(bake: &str, layout: &str, points: &[[f64; 4]]) -> Vec<Vec<f64>> {
 
 /// The first of a list of a manifest's constants.
 pub fn constant(bake: &str, name: &str) -> f64 {
+    manifest(bake)["constants"][name][0].as_f64().unwrap()
+}
+
+pub fn manifest(bake: &str) -> serde_json::Value {
     let text = std::fs::read_to_string(Path::new(bake).join("bake.json")).unwrap();
-    let manifest: serde_json::Value = serde_json::from_str(&text).unwrap();
-    manifest["constants"][name][0].as_f64().unwrap()
+    serde_json::from_str(&text).unwrap()
 }

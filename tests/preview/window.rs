@@ -1,5 +1,7 @@
 //! The window, on a display without a screen. Needs Xvfb and xdotool; skipped with a notice where they are not there.
 
+use super::drop::drop_on;
+use super::pictures::{picture, read_png};
 use super::run::*;
 use std::fs;
 use std::io::{BufRead, BufReader};
@@ -45,10 +47,27 @@ impl Display {
         self.xdotool("search --name PgUp getwindowname")
     }
 
+    fn window(&self) -> String {
+        self.xdotool("search --name PgUp")
+    }
+
     fn key(&self, key: &str) {
-        let window = self.xdotool("search --name PgUp");
-        self.xdotool(&format!("windowfocus {window}"));
+        self.xdotool(&format!("windowfocus {}", self.window()));
         self.xdotool(&format!("key {key}"));
+    }
+
+    /// A window on a bake; the folder takes its screenshots, and what it says on stderr.
+    fn open(&self, folder: &Path, bake: &str, more: &[&str]) -> Child {
+        preview_command()
+            .arg(bake)
+            .args(more)
+            .current_dir(folder)
+            .env("DISPLAY", &self.name)
+            .env_remove("WAYLAND_DISPLAY")
+            .stdout(Stdio::null())
+            .stderr(fs::File::create(folder.join("stderr")).unwrap())
+            .spawn()
+            .unwrap()
     }
 }
 
@@ -68,9 +87,24 @@ fn until(what: &str, mut holds: impl FnMut() -> bool) {
     }
 }
 
+/// Presses a key for something to come about, again after a while: a display without a window manager may lose one.
+fn press(display: &Display, key: &str, what: &str, holds: impl Fn() -> bool) {
+    let mut pressed: Option<Instant> = None;
+    until(what, || {
+        if pressed.is_none_or(|at| at.elapsed() > Duration::from_secs(25)) {
+            display.key(key);
+            pressed = Some(Instant::now());
+        }
+        holds()
+    });
+}
+
 /// Copies a bake over another, the manifest last, as a bake that is written anew.
 fn put(bake: &str, to: &Path) {
-    for folder in ["compact", "elek2010", ""] {
+    for folder in ["compact", "elek2010", "water", ""] {
+        if !Path::new(bake).join(folder).is_dir() {
+            continue;
+        }
         fs::create_dir_all(to.join(folder)).unwrap();
         for path in fs::read_dir(Path::new(bake).join(folder)).unwrap().map(|e| e.unwrap().path()) {
             if path.is_file() {
@@ -80,8 +114,22 @@ fn put(bake: &str, to: &Path) {
     }
 }
 
+/// Waits for the end of a program: its exit code.
+fn end(program: &mut Child) -> Option<i32> {
+    let mut status = None;
+    until("the end", || {
+        status = program.try_wait().unwrap();
+        status.is_some()
+    });
+    status.unwrap().code()
+}
+
+fn said(folder: &Path) -> String {
+    fs::read_to_string(folder.join("stderr")).unwrap()
+}
+
 /// A window opens with the bake in its title; Tab switches the layout, P leaves a picture, a bake written anew is
-/// loaded, Escape ends the program, which found nothing to complain of.
+/// loaded, W goes through its waters and back to land, Escape ends the program, which found nothing to complain of.
 #[test]
 fn a_window_opens_and_obeys() {
     if !gpu() {
@@ -91,29 +139,127 @@ fn a_window_opens_and_obeys() {
     let dir = tempfile::tempdir().unwrap();
     let bake = dir.path().join("bake");
     put(earth(), &bake);
-    let mut program = preview_command()
-        .args([bake.to_str().unwrap(), "--size", "160x90"])
-        .current_dir(dir.path())
-        .env("DISPLAY", &display.name)
-        .env_remove("WAYLAND_DISPLAY")
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut program = display.open(dir.path(), bake.to_str().unwrap(), &["--size", "160x90"]);
     until("the title", || display.title().contains("earth compact tables"));
+    press(&display, "Tab", "the other layout", || display.title().contains("earth elek2010"));
+    press(&display, "p", "the screenshot", || dir.path().join("preview-001.png").exists());
+    put(wet(), &bake);
+    until("the bake that was written anew", || display.title().contains("mars elek2010"));
+    press(&display, "w", "the first water", || display.title().contains("clear-ocean 10.0 m deep"));
+    press(&display, "w", "the second water", || display.title().contains("muddy"));
+    press(&display, "w", "land", || !display.title().contains("deep"));
+    display.key("Escape");
+    assert_eq!((end(&mut program), said(dir.path()).as_str()), (Some(0), ""));
+}
+
+/// A folder dropped on the window is loaded. One that is no bake, a bake written anew that is cut off, and one of a newer
+/// schema are told in a line, and the picture that is there stays.
+#[test]
+fn what_cannot_be_loaded_leaves_the_picture() {
+    if !gpu() {
+        return;
+    }
+    let Some(display) = Display::new() else { return };
+    let dir = tempfile::tempdir().unwrap();
+    let bake = dir.path().join("bake");
+    put(earth(), &bake);
+    let mut program = display.open(dir.path(), mars(), &["--size", "160x90"]);
+    until("the title", || display.title().contains("mars compact tables"));
+    let drop = |folder: &Path| drop_on(&display.name, display.window().parse().unwrap(), folder);
+    drop(&bake);
+    until("the bake that was dropped", || display.title().contains("earth compact tables"));
+
+    let mut lines = 0;
+    let mut line = |word: &str| {
+        lines += 1;
+        until(word, || said(dir.path()).lines().count() == lines);
+        let last = said(dir.path()).lines().last().unwrap().to_string();
+        assert!(last.starts_with("error: ") && last.contains(word), "{last}");
+        assert!(display.title().contains("earth compact tables"), "{}", display.title());
+    };
+    let empty = dir.path().join("empty");
+    fs::create_dir(&empty).unwrap();
+    drop(&empty);
+    line("empty");
+    let manifest = fs::read_to_string(bake.join("bake.json")).unwrap();
+    fs::write(bake.join("bake.json"), &manifest[..manifest.len() / 2]).unwrap();
+    line("bake.json");
+    let newer = manifest.replacen("\"schema_version\": 1", "\"schema_version\": 999", 1);
+    fs::write(bake.join("bake.json"), newer).unwrap();
+    line("999");
+    put(mars(), &bake);
+    until("a sound bake again", || display.title().contains("mars compact tables"));
+    display.key("Escape");
+    assert_eq!(end(&mut program), Some(0), "{}", said(dir.path()));
+}
+
+/// G held in the window turns the aerosol's g: five presses take it from 0.76 to 0.86, and the picture is the one that
+/// `--g 0.86` draws, another than before.
+#[test]
+fn g_is_turned_live() {
+    if !gpu() {
+        return;
+    }
+    let Some(display) = Display::new() else { return };
+    let dir = tempfile::tempdir().unwrap();
+    let line = "--layout elek2010 --size 96x54 --exposure 14";
+    let mut program = display.open(dir.path(), mars(), &line.split(' ').collect::<Vec<_>>());
+    until("the title", || display.title().contains("mars elek2010"));
+    display.key("p");
+    until("a screenshot", || dir.path().join("preview-001.png").exists());
+    display.key("g g g g g");
+    display.key("p");
+    until("another screenshot", || dir.path().join("preview-002.png").exists());
+    display.key("Escape");
+    assert_eq!((end(&mut program), said(dir.path()).as_str()), (Some(0), ""));
+    let [before, after] =
+        ["preview-001.png", "preview-002.png"].map(|name| read_png(&dir.path().join(name)).2);
+    let wanted = picture(mars(), &format!("{line} --g 0.86")).2;
+    let apart = |a: &[u8], b: &[u8]| a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap();
+    assert!(apart(&after, &wanted) <= 1, "{}", apart(&after, &wanted));
+    assert!(apart(&after, &before) > 10, "{}", apart(&after, &before));
+}
+
+/// A window of one pixel, a hidden one and one that is large again: frames go on, and nothing is said. (X11 has no windows
+/// of no size; of other systems' the program draws none.)
+#[test]
+fn windows_shrink_and_hide() {
+    if !gpu() {
+        return;
+    }
+    let Some(display) = Display::new() else { return };
+    let dir = tempfile::tempdir().unwrap();
+    let mut program = display.open(dir.path(), earth(), &["--size", "160x90", "--relief"]);
+    until("the title", || display.title().contains("earth compact tables"));
+    let window = display.window();
+    display.xdotool(&format!("windowsize {window} 1 1"));
     display.key("Tab");
     until("the other layout", || display.title().contains("earth elek2010"));
-    display.key("p");
-    until("the screenshot", || dir.path().join("preview-001.png").exists());
-    put(mars(), &bake);
-    until("the bake that was written anew", || display.title().contains("mars elek2010"));
-    display.key("Escape");
-    let mut status = None;
-    until("the end", || {
-        status = program.try_wait().unwrap();
-        status.is_some()
+    display.xdotool(&format!("windowunmap {window}"));
+    display.xdotool(&format!("windowmap {window}"));
+    display.xdotool(&format!("windowsize {window} 200 100"));
+    until("the new size", || {
+        display.key("p");
+        let shots = fs::read_dir(dir.path()).unwrap().map(|e| e.unwrap().path());
+        shots.filter(|p| p.extension().is_some_and(|e| e == "png")).any(|p| {
+            let whole = fs::metadata(&p).is_ok_and(|m| m.len() > 1000);
+            whole && std::panic::catch_unwind(|| read_png(&p)).is_ok_and(|(w, h, _)| (w, h) == (200, 100))
+        })
     });
-    let mut said = String::new();
-    std::io::Read::read_to_string(&mut program.stderr.take().unwrap(), &mut said).unwrap();
-    assert!(status.unwrap().success() && !said.contains("error:"), "{status:?}: {said}");
+    display.key("Escape");
+    assert_eq!((end(&mut program), said(dir.path()).as_str()), (Some(0), ""));
+}
+
+/// A device that is lost while frames are drawn ends the window with one line and the machine's exit code.
+#[test]
+fn a_device_lost_under_a_window_is_told() {
+    if !gpu() {
+        return;
+    }
+    let Some(display) = Display::new() else { return };
+    let dir = tempfile::tempdir().unwrap();
+    let mut program = display.open(dir.path(), earth(), &["--size", "160x90", "--lose-device"]);
+    assert_eq!(end(&mut program), Some(3));
+    let said = said(dir.path());
+    assert!(said.starts_with("error: GPU: the device was lost") && said.lines().count() == 1, "{said}");
 }

@@ -1,5 +1,6 @@
 //! One layout of a bake, read from its files and checked, in the form that textures take.
 
+use crate::sea::Water;
 use crate::uniforms::{MOST_GROUPS, TableUniform, TablesUniform, four, rgb_rows};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -44,7 +45,7 @@ impl Texels {
         Texels { size: [1, 1, 1], bits: vec![[0; 4]] }
     }
 
-    fn new(table: &Table, atlas: &Atlas) -> Texels {
+    pub fn new(table: &Table, atlas: &Atlas) -> Texels {
         let mut bits = vec![[0u16; 4]; atlas.slice_len() * atlas.slices];
         for (k, info) in table.channels.iter().enumerate().take(4) {
             let Some(channel) = atlas.channel(&info.name) else { continue };
@@ -56,6 +57,19 @@ impl Texels {
             }
         }
         Texels { size: [atlas.width, atlas.height, atlas.slices], bits }
+    }
+
+    /// The same texels as many along each axis as a table of up to three says.
+    pub fn shaped(mut self, table: &Table) -> Texels {
+        self.size = [0, 1, 2].map(|axis| table.shape.get(axis).copied().unwrap_or(1));
+        self
+    }
+
+    /// One slice.
+    pub fn slice(&self, z: usize) -> Texels {
+        let [width, height, _] = self.size;
+        let bits = self.bits.iter().skip(z * width * height).take(width * height).copied().collect();
+        Texels { size: [width, height, 1], bits }
     }
 }
 
@@ -73,6 +87,8 @@ pub struct Bake {
     pub phase: Texels,
     /// The same look-ups in double precision, for exposure.
     pub sky: Sky,
+    /// What is drawn where the ground is; none: land.
+    pub water: Option<Water>,
 }
 
 impl Bake {
@@ -97,10 +113,25 @@ impl Bake {
         Reader { folder, manifest: &manifest, layout, pictures: &pictures }.bake(sky)
     }
 
+    /// Names of the waters that were baked with the planet.
+    pub fn waters(&self) -> impl Iterator<Item = &str> {
+        self.manifest.waters.iter().map(|w| w.name.as_str())
+    }
+
+    /// The same with the water of a name, or with land.
+    ///
+    /// # Errors
+    /// Those of [`Water::open`].
+    pub fn with_water(mut self, name: Option<&str>) -> Result<Bake> {
+        self.water = name.map(|name| Water::open(&self, name)).transpose()?;
+        Ok(self)
+    }
+
     /// Bytes of texels that the textures take.
     pub fn texture_bytes(&self) -> usize {
         let all = [&self.volume, &self.single, &self.depth, &self.scatterers, &self.irradiance, &self.phase];
-        all.iter().map(|t| 8 * t.bits.len()).sum()
+        let water = self.water.iter().flat_map(Water::textures);
+        all.into_iter().chain(water).map(|t| 8 * t.bits.len()).sum()
     }
 
     /// Radius of the ground and of the top, m.
@@ -133,7 +164,7 @@ impl Reader<'_> {
             scatterers: self.uniform("scatterers")?,
             irradiance: self.uniform("irradiance")?,
             phase: self.uniform("phase")?,
-            rgb: rgb_rows(self.manifest, illuminance),
+            rgb: rgb_rows(self.manifest, "rgb_from_four", illuminance),
             ..Default::default()
         };
         if let Some(albedo) = self.manifest.constants.get("ground_albedo_at_four") {
@@ -160,6 +191,7 @@ impl Reader<'_> {
             irradiance: self.texels("irradiance"),
             phase: self.texels("phase"),
             sky,
+            water: None,
         })
     }
 

@@ -22,59 +22,76 @@ const SMALL: [u32; 2] = [96, 54];
 const STEPS: [u32; 22] =
     [2, 3, 4, 5, 6, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 64, 80, 96, 128, 192, 256];
 
-/// Prints the times of all methods that the layout has, and their ratios.
+/// Prints the times of all methods that the layout has, or of the one that is asked for, their ratios, and the memory
+/// that each takes on the GPU.
 pub fn run(gpu: &Gpu, bake: &Bake, options: &Options) -> Result<()> {
-    let view = options.view(bake)?;
-    let [width, height] = view.size;
-    let stopwatch = Stopwatch::new(gpu);
-    println!(
-        "{}, {}, {width}x{height}, {} frames, {}",
-        gpu.name(),
-        bake.layout.name(),
-        options.frames,
-        stopwatch.about()
-    );
-    println!("{:<22} {:>9} {:>9} {:>9}   ms a frame", "method", "min", "median", "max");
-    let table = timed(gpu, bake, options, &view, &stopwatch, Method::Table, "table")?;
-    println!("textures: {:.1} MB", bake.texture_bytes() as f64 * 1e-6);
+    let bench = Bench { gpu, bake, options, view: options.view(bake)?, stopwatch: Stopwatch::new(gpu) };
+    let [width, height] = bench.view.size;
+    let (layout, frames, clock) = (bake.layout.name(), options.frames, bench.stopwatch.about());
+    println!("{}, {layout}, {width}x{height}, {frames} frames, {clock}", gpu.name());
+    println!("{:<22} {:>9} {:>9} {:>9} ms a frame {:>9} MB", "method", "min", "median", "max", "memory");
+    if options.method.is_some() {
+        bench.timed(options.method(bake)?)?;
+        return bench.say_textures();
+    }
+    let table = bench.timed(Method::Table)?;
     if bake.uniforms.counts[0] < 0.5 {
         println!("no march: it needs layout compact");
-        return Ok(());
+        return bench.say_textures();
     }
-    let with_table = fewest_view_steps(gpu, bake, &view, 0)?;
-    let sun = fewest_sun_steps(gpu, bake, &view)?;
-    let plain = fewest_view_steps(gpu, bake, &view, sun)?;
-    let name = format!("march {plain}x{sun}");
-    let march = timed(gpu, bake, options, &view, &stopwatch, Method::March { view: plain, sun }, &name)?;
-    let name = format!("march {with_table}, 2D table");
-    let method = Method::March { view: with_table, sun: 0 };
-    let march_2d = timed(gpu, bake, options, &view, &stopwatch, method, &name)?;
+    let with_table = fewest_view_steps(gpu, bake, &bench.view, 0)?;
+    let sun = fewest_sun_steps(gpu, bake, &bench.view)?;
+    let plain = fewest_view_steps(gpu, bake, &bench.view, sun)?;
+    let march = bench.timed(Method::March { view: plain, sun })?;
+    let march_2d = bench.timed(Method::March { view: with_table, sun: 0 })?;
     let [t, m, d] = [table.median, march.median, march_2d.median];
     println!("table : march : march with 2D table = 1 : {:.2} : {:.2}", m / t, d / t);
     println!("march over march with 2D table: {:.1} (published: 10)", m / d);
     println!("march over table: {:.1} (published, vertices: 4 to 5.3)", m / t);
     println!("The table's frames hold all orders of scattering, the marches' the first.");
-    Ok(())
+    bench.say_textures()
 }
 
-fn timed(
-    gpu: &Gpu,
-    bake: &Bake,
-    options: &Options,
-    view: &View,
-    stopwatch: &Stopwatch,
-    method: Method,
-    name: &str,
-) -> Result<Times> {
-    let look = Look { method, ..options.look(bake, SHOWN)? };
-    let painter = Painter::new(gpu, bake, &look)?;
-    let target = Target::new(gpu, view.size, look.format)?;
-    let frame = FrameUniform::new(bake, view);
-    let times = stopwatch.times(gpu, options.frames, |encoder, timestamps| {
-        painter.draw(gpu, bake, encoder, &target.view, &frame, timestamps);
-    })?;
-    println!("{name:<22} {:>9.3} {:>9.3} {:>9.3}", times.min, times.median, times.max);
-    Ok(times)
+/// What all methods are timed with.
+struct Bench<'a> {
+    gpu: &'a Gpu,
+    bake: &'a Bake,
+    options: &'a Options,
+    view: View,
+    stopwatch: Stopwatch,
+}
+
+impl Bench<'_> {
+    /// Times of a method, which it prints.
+    fn timed(&self, method: Method) -> Result<Times> {
+        let Bench { gpu, bake, options, view, stopwatch } = self;
+        let look = Look { method, ..options.look(bake, SHOWN)? };
+        let painter = Painter::new(gpu, bake, &look)?;
+        let target = Target::new(gpu, view.size, look.format)?;
+        let frame = FrameUniform::new(bake, view);
+        let draw = |encoder: &mut _| painter.draw(gpu, bake, encoder, &target.view, &frame);
+        let times = stopwatch.times(gpu, options.frames, draw)?;
+        let name = match method {
+            Method::Table => "table".to_string(),
+            Method::March { view, sun: 0 } => format!("march {view}, 2D table"),
+            Method::March { view, sun } => format!("march {view}x{sun}"),
+        };
+        let Times { min, median, max } = times;
+        println!("{name:<22} {min:>9.3} {median:>9.3} {max:>9.3}            {:>9}", megabytes(gpu.memory()));
+        Ok(times)
+    }
+
+    fn say_textures(&self) -> Result<()> {
+        let bytes = megabytes(Some(self.bake.texture_bytes() as u64));
+        println!(
+            "memory: all that the GPU holds, the picture with it; the bake's textures are {bytes} MB of it"
+        );
+        Ok(())
+    }
+}
+
+fn megabytes(bytes: Option<u64>) -> String {
+    bytes.map_or_else(|| "unknown".into(), |n| format!("{:.1}", n as f64 * 1e-6))
 }
 
 /// Light of each pixel of a small picture.

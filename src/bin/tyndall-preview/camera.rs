@@ -10,7 +10,7 @@ pub enum Kind {
     Ground,
     /// A perspective that looks down at the planet from afar
     Orbit,
-    /// The whole sky above, in equal angles
+    /// A half sphere in equal angles: the whole sky above, or about another --pitch
     Fisheye,
 }
 
@@ -56,8 +56,8 @@ impl Camera {
         let level = dvec3(-sin_h, 0.0, cos_h);
         let forward = level * cos_p + DVec3::Y * sin_p;
         let up = DVec3::Y * cos_p - level * sin_p;
-        // Of the sky above, the heading is at the top.
-        let up = if self.kind == Kind::Fisheye { -up } else { up };
+        // Of the sky above, the heading is at the top; of what lies ahead, the sky is.
+        let up = if self.kind == Kind::Fisheye && self.pitch > 45.0 { -up } else { up };
         [forward.cross(up), up, forward]
     }
 
@@ -123,6 +123,9 @@ mod tests {
         assert_eq!(camera.direction(0.6, 0.0, 2.0), None);
         // The star's azimuth is at the top.
         assert!(camera.direction(0.0, 0.9, 2.0).unwrap().dot(camera.sun()) > 0.0);
+        // Turned level, it has the sky at the top and what lies below at the bottom.
+        let level = Camera { pitch: 0.0, ..camera };
+        assert!(level.direction(0.0, 0.9, 2.0).unwrap().y > 0.9);
     }
 
     /// From two radii up, the planet's limb lies inside the picture and its disc fills most of it.

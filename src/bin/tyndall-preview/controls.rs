@@ -17,13 +17,15 @@ pub const HELP: &str = "Keys of the window:
   Tab                 layout elek2010 or compact
   M                   tables, march, march with a 2D table (layout compact)
   T                   tone mapping
+  W                   water: the next of the bake, and land again
+  [ and ]             shallower and deeper water
   G, Shift+G          g of the aerosol's phase function up, down (layout elek2010)
   C                   camera: ground, orbit, fisheye
   P                   screenshot, a PNG in the current folder
   Escape              quit
 A folder dropped on the window is loaded; a bake that is written anew is loaded again.";
 
-pub const TITLE_KEYS: &str = "arrows PgUp PgDn , . Space - = A Tab M T G C P Esc";
+pub const TITLE_KEYS: &str = "arrows PgUp PgDn , . Space - = A Tab M T W [ ] G C P Esc";
 
 /// What a key press asks of the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +33,7 @@ pub enum Request {
     Nothing,
     /// Tables or method changed: pipelines have to be made again.
     SwitchLayout,
+    SwitchWater,
     Rebuild,
     Screenshot,
     Quit,
@@ -48,6 +51,9 @@ pub struct Controls {
     /// Seconds into the running day.
     pub day: Option<f64>,
     pub radii: [f64; 2],
+    /// Of the water that is shown, m, and the deepest that its tables hold.
+    pub depth: f64,
+    pub deepest: f64,
     held: BTreeSet<KeyCode>,
 }
 
@@ -73,6 +79,8 @@ impl Controls {
             g: view.g,
             day: None,
             radii,
+            depth: view.water_depth,
+            deepest: 0.0,
             held: BTreeSet::new(),
         }
     }
@@ -89,6 +97,7 @@ impl Controls {
             KeyCode::KeyG => self.turn_g(),
             _ if again => {}
             KeyCode::Tab => return Request::SwitchLayout,
+            KeyCode::KeyW => return Request::SwitchWater,
             KeyCode::KeyP => return Request::Screenshot,
             KeyCode::KeyM => {
                 self.method = self.next_method();
@@ -158,6 +167,10 @@ impl Controls {
         let climb = axis(KeyCode::PageUp, KeyCode::PageDown);
         let sun = axis(KeyCode::Period, KeyCode::Comma);
         let light = axis(KeyCode::Equal, KeyCode::Minus);
+        let deeper = axis(KeyCode::BracketRight, KeyCode::BracketLeft);
+        if self.deepest > 0.0 {
+            self.depth = ((self.depth + 0.1) * libm::exp(dt * deeper) - 0.1).clamp(0.0, self.deepest);
+        }
         let camera = &mut self.camera;
         let rate = dt * camera.field.min(60.0);
         camera.heading = (camera.heading + rate * turn).rem_euclid(360.0);
@@ -193,6 +206,7 @@ mod tests {
             tone_mapping: ToneMapping::Neutral,
             horizon_mended: true,
             g: None,
+            water_depth: 10.0,
         };
         Controls::new(&view, Exposure::Auto(0.0), Method::Table, [32, 8], radii)
     }
@@ -208,6 +222,24 @@ mod tests {
         c.press(KeyCode::PageDown, false);
         (0..300).for_each(|_| c.advance(0.1));
         assert_eq!(c.camera.altitude, 0.5);
+    }
+
+    /// Without water its depth stays what it was; with it, brackets take it to the surface and to the deepest there is.
+    #[test]
+    fn brackets_change_the_depth() {
+        let mut c = controls();
+        c.press(KeyCode::BracketRight, false);
+        c.advance(1.0);
+        assert_eq!(c.depth, 10.0);
+        c.deepest = 30.0;
+        c.advance(0.5);
+        assert!(c.depth > 10.0 && c.depth < 30.0, "{}", c.depth);
+        c.advance(9.0);
+        assert_eq!(c.depth, 30.0);
+        c.release(KeyCode::BracketRight);
+        c.press(KeyCode::BracketLeft, false);
+        c.advance(20.0);
+        assert_eq!(c.depth, 0.0);
     }
 
     /// The day starts where the star stands and brings it to its highest a quarter of a day after its rise.

@@ -3,7 +3,9 @@
 use crate::bake::Bake;
 use crate::camera::Camera;
 use glam::{DMat3, DVec3};
+use tyndall::points::Point;
 use tyndall::sky::Component;
+use tyndall::sky::water::WaterView;
 
 /// Either found from the picture or an exposure value at ISO 100.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,10 +41,10 @@ impl std::str::FromStr for Exposure {
 }
 
 /// What 1 cd/m² becomes on the display, 1 being white.
-pub fn factor(exposure: Exposure, bake: &Bake, camera: &Camera, aspect: f64) -> f64 {
+pub fn factor(exposure: Exposure, bake: &Bake, camera: &Camera, aspect: f64, depth: f64) -> f64 {
     match exposure {
         Exposure::Ev100(ev) => libm::exp2(-ev) / SATURATION,
-        Exposure::Auto(stops) => libm::exp2(stops) * MIDDLE / mean_luminance(bake, camera, aspect),
+        Exposure::Auto(stops) => libm::exp2(stops) * MIDDLE / mean_luminance(bake, camera, aspect, depth),
     }
 }
 
@@ -52,14 +54,14 @@ pub fn ev100(factor: f64) -> f64 {
 }
 
 /// Geometric mean of the luminance of all that is lit, cd/m², of 32 × 18 places of the picture.
-fn mean_luminance(bake: &Bake, camera: &Camera, aspect: f64) -> f64 {
+fn mean_luminance(bake: &Bake, camera: &Camera, aspect: f64, depth: f64) -> f64 {
     let illuminance = bake.constant("star_illuminance_lx").unwrap_or(1.0);
     let display = display_matrix(bake);
     let places = (0..32).flat_map(|i| (0..18).map(move |j| [i as f64 / 15.5 - 1.0, j as f64 / 8.5 - 1.0]));
     let light: Vec<f64> = places
         .filter_map(|[x, y]| camera.direction(x, y, aspect))
         .map(|d| {
-            let rgb = DVec3::from(bake.sky.rgb(&camera.point(d), Component::Total));
+            let rgb = light_from(bake, &camera.point(d), depth);
             (display * rgb).max(DVec3::ZERO).dot(DVec3::new(0.2126, 0.7152, 0.0722)) * illuminance
         })
         .collect();
@@ -70,6 +72,22 @@ fn mean_luminance(bake: &Bake, camera: &Camera, aspect: f64) -> f64 {
         0 => 1.0,
         n => libm::exp(lit.iter().map(|l| libm::log(*l)).sum::<f64>() / n as f64),
     }
+}
+
+/// Linear RGB of a view, over the star's illuminance; of water, where the bake has one, of this depth.
+fn light_from(bake: &Bake, point: &Point, depth: f64) -> DVec3 {
+    let sky = |p: &Point, part| DVec3::from(bake.sky.rgb(p, part));
+    let met =
+        bake.water.as_ref().and_then(|w| Some((w, WaterView::meet(bake.radii()[0], depth, point).ok()?)));
+    let Some((water, (view, azimuth))) = met else { return sky(point, Component::Total) };
+    let below = Point { altitude: 0.0, mu: -1.0, mu_s: view.mu_s, azimuth_deg: 0.0 };
+    let up = Point { mu: view.mu, azimuth_deg: azimuth.to_degrees(), ..below };
+    // What is left of the ground's light on its way is left of the water's.
+    let (left, whole) = (sky(point, Component::Ground), sky(&below, Component::Ground));
+    let through = DVec3::from_array([0, 1, 2].map(|c| if whole[c] > 0.0 { left[c] / whole[c] } else { 1.0 }));
+    let leaving = DVec3::from(water.sky.rgb(&water.sky.leaving(&view, Component::Total)));
+    let mirrored = water.sky.mirrored(view.mu).first().copied().unwrap_or(0.0);
+    sky(point, Component::Scattering) + through * (leaving + mirrored * sky(&up, Component::Total))
 }
 
 /// From the bake's linear RGB to linear sRGB (IEC 61966-2-1), without adaptation of the white.

@@ -35,7 +35,9 @@ impl Gpu {
         };
         let adapter =
             pollster::block_on(instance.request_adapter(&options)).map_err(|_| failed(NO_ADAPTER))?;
-        let wanted = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::FLOAT32_FILTERABLE;
+        let wanted = wgpu::Features::TIMESTAMP_QUERY
+            | wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS
+            | wgpu::Features::FLOAT32_FILTERABLE;
         let descriptor = wgpu::DeviceDescriptor {
             required_features: adapter.features() & wanted,
             required_limits: adapter.limits(),
@@ -43,17 +45,17 @@ impl Gpu {
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).map_err(failed)?;
         let failure = Arc::new(Mutex::new(None));
-        let note = |failure: &Arc<Mutex<Option<String>>>, what: String| {
-            if let Ok(mut slot) = failure.lock() {
-                slot.get_or_insert(what);
+        let kept: Arc<Mutex<Option<String>>> = failure.clone();
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            if let Ok(mut slot) = kept.lock() {
+                slot.get_or_insert(error.to_string());
             }
-        };
+        }));
+        // A loss explains whatever failed before it was told.
         let kept = failure.clone();
-        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| note(&kept, error.to_string())));
-        let kept = failure.clone();
-        device.set_device_lost_callback(move |reason, text| {
-            if reason != wgpu::DeviceLostReason::Destroyed {
-                note(&kept, format!("the device was lost: {text}"));
+        device.set_device_lost_callback(move |_, text| {
+            if let Ok(mut slot) = kept.lock() {
+                *slot = Some(format!("the device was lost {text}"));
             }
         });
         Ok(Gpu { adapter, device, queue, failure })
@@ -73,6 +75,8 @@ impl Gpu {
     /// # Errors
     /// `Machine` with what went wrong since the device was opened.
     pub fn check(&self) -> Result<()> {
+        // What was lost is told in a poll; a poll that fails is told by what was lost.
+        let _ = self.device.poll(wgpu::PollType::Poll);
         match self.failure.lock() {
             Ok(slot) => slot.as_ref().map_or(Ok(()), |what| Err(failed(what))),
             Err(_) => Err(failed("a callback panicked")),
@@ -85,6 +89,11 @@ impl Gpu {
         self.check()
     }
 
+    /// Bytes that textures and buffers take on the device, where the driver's interface lets them be counted.
+    pub fn memory(&self) -> Option<u64> {
+        self.device.generate_allocator_report().map(|report| report.total_allocated_bytes)
+    }
+
     pub fn shader(&self, label: &str, source: &str) -> wgpu::ShaderModule {
         self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(label),
@@ -92,10 +101,14 @@ impl Gpu {
         })
     }
 
+    /// A buffer of these bytes, a multiple of four of them.
     pub fn buffer(&self, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
-        use wgpu::util::DeviceExt;
-        let contents = bytes;
-        self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
+        let (size, usage) = (bytes.len() as u64, usage | wgpu::BufferUsages::COPY_DST);
+        let descriptor = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
+        let buffer = self.device.create_buffer(&descriptor);
+        // Not create_buffer_init, which panics where the device is lost.
+        self.queue.write_buffer(&buffer, 0, bytes);
+        buffer
     }
 
     /// A buffer that a copy can be made into and read back from.

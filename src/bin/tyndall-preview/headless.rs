@@ -27,7 +27,7 @@ pub fn pixels(gpu: &Gpu, bake: &Bake, view: &View, look: &Look) -> Result<Vec<u8
     let target = Target::new(gpu, view.size, look.format)?;
     let painter = Painter::new(gpu, bake, look)?;
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    painter.draw(gpu, bake, &mut encoder, &target.view, &FrameUniform::new(bake, view), None);
+    painter.draw(gpu, bake, &mut encoder, &target.view, &FrameUniform::new(bake, view));
     gpu.queue.submit([encoder.finish()]);
     target.read(gpu)
 }

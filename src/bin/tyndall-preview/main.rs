@@ -17,6 +17,7 @@ mod points;
 mod relief;
 mod resources;
 mod screen;
+mod sea;
 mod slicer;
 mod stopwatch;
 mod target;
@@ -31,6 +32,7 @@ use std::io::Write;
 use tyndall::Error;
 
 fn main() -> std::process::ExitCode {
+    hush();
     match run(&Options::parse()) {
         Ok(()) => std::process::ExitCode::SUCCESS,
         Err(error) => {
@@ -41,14 +43,27 @@ fn main() -> std::process::ExitCode {
     }
 }
 
+/// Mesa's layer that chooses among GPUs asks for a Wayland display and says on stderr where there can be none: then it
+/// is left out.
+fn hush() {
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        // SAFETY: no other thread runs yet that could read the environment.
+        unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
+    }
+}
+
 fn run(options: &Options) -> tyndall::Result<()> {
-    let bake = Bake::open(&options.bake, options.layout)?;
+    let bake = Bake::open(&options.bake, options.layout)?.with_water(options.water.as_deref())?;
     if !(options.headless || options.bench || options.points.is_some()) {
         return window::run(options, bake);
     }
     let gpu = Gpu::headless()?;
+    if options.lose_device {
+        gpu.device.destroy();
+    }
     if let Some(csv) = &options.points {
-        return points::run(&gpu, &bake, csv, options.hand_filtered, &mut std::io::stdout().lock());
+        let depth = options.depth(&bake)?;
+        return points::run(&gpu, &bake, csv, options.hand_filtered, depth, &mut std::io::stdout().lock());
     }
     if options.bench {
         return bench::run(&gpu, &bake, options);

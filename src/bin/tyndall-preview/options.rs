@@ -6,6 +6,7 @@ use crate::exposure::{Exposure, factor};
 use crate::frame::{ToneMapping, View};
 use crate::painter::Look;
 use crate::resources::Method;
+use crate::sea::USUAL_DEPTH;
 use std::path::PathBuf;
 use tyndall::{Error, Result};
 
@@ -56,19 +57,25 @@ pub struct Options {
     /// g of Cornette and Shanks for the aerosol of layout elek2010, in place of the table's phase function
     #[arg(long, value_name = "G", allow_hyphen_values = true, value_parser = asymmetry)]
     pub g: Option<f64>,
+    /// A water of the bake, by its name, where the ground is
+    #[arg(long, value_name = "NAME")]
+    pub water: Option<String>,
+    /// Depth of the water, m [default: 10, or its tables' largest]
+    #[arg(long, value_name = "M", requires = "water", allow_hyphen_values = true)]
+    pub depth: Option<f64>,
     /// Terrain around the observer, seen through the air
     #[arg(long)]
     pub relief: bool,
     /// Show terrain by the plain difference of two look-ups, whose weakness near the horizon is else mended
     #[arg(long, requires = "relief")]
     pub bare_difference: bool,
-    /// Where the light comes from
-    #[arg(long, default_value = "table")]
-    pub method: MethodName,
+    /// Where the light comes from; table unless said otherwise, with --bench all in turn
+    #[arg(long)]
+    pub method: Option<MethodName>,
     /// Steps of a march along the view and towards the sun
     #[arg(long, value_name = "VIEWxSUN", default_value = "64x16", value_parser = size)]
     pub steps: [u32; 2],
-    /// Print the times of a frame, by tables and by marches, and their ratio
+    /// Print times and memory of a frame, by tables and by marches, and their ratio
     #[arg(long, conflicts_with = "points")]
     pub bench: bool,
     /// Frames that --bench takes times of
@@ -80,6 +87,9 @@ pub struct Options {
     /// Weigh texels in the shader, to the last digit, and not in the texture units
     #[arg(long)]
     pub hand_filtered: bool,
+    /// For tests: the device is lost before the first picture, or after the first frame of a window
+    #[arg(long, hide = true)]
+    pub lose_device: bool,
 }
 
 /// Where the light of a frame comes from.
@@ -132,11 +142,12 @@ impl Options {
     /// # Errors
     /// `Argument` for a march in a layout that does not hold what it needs.
     pub fn method(&self, bake: &Bake) -> Result<Method> {
-        if self.method != MethodName::Table && bake.layout != Layout::Compact {
+        let method = self.method.unwrap_or(MethodName::Table);
+        if method != MethodName::Table && bake.layout != Layout::Compact {
             return Err(Error::Argument("--method: a march needs layout compact".into()));
         }
         let [view, sun] = self.steps;
-        Ok(match self.method {
+        Ok(match method {
             MethodName::Table => Method::Table,
             MethodName::March => Method::March { view, sun },
             MethodName::March2d => Method::March { view, sun: 0 },
@@ -150,6 +161,20 @@ impl Options {
             return Err(Error::Argument("--relief: wants --camera ground".into()));
         }
         Ok(Look { method: self.method(bake)?, hand_filtered: self.hand_filtered, format, relief })
+    }
+
+    /// Depth of the water, m.
+    ///
+    /// # Errors
+    /// `Argument` for one that the water's tables do not hold.
+    pub fn depth(&self, bake: &Bake) -> Result<f64> {
+        let Some(water) = &bake.water else { return Ok(USUAL_DEPTH) };
+        let most = water.sky.largest_depth;
+        let depth = self.depth.unwrap_or(USUAL_DEPTH.min(most));
+        if (0.0..=most).contains(&depth) {
+            return Ok(depth);
+        }
+        Err(Error::Argument(format!("--depth {depth}: the tables of {} hold 0 to {most} m", water.name)))
     }
 
     /// The frame that the options ask for.
@@ -166,7 +191,8 @@ impl Options {
         camera.pitch = self.pitch.unwrap_or(camera.pitch);
         camera.field = self.field.unwrap_or(camera.field);
         let aspect = f64::from(self.size[0]) / f64::from(self.size[1]);
-        let exposure = factor(self.exposure, bake, &camera, aspect);
+        let water_depth = self.depth(bake)?;
+        let exposure = factor(self.exposure, bake, &camera, aspect, water_depth);
         let horizon_mended = !self.bare_difference;
         Ok(View {
             camera,
@@ -175,6 +201,7 @@ impl Options {
             tone_mapping: self.tone_mapping,
             horizon_mended,
             g: self.g,
+            water_depth,
         })
     }
 }

@@ -86,9 +86,11 @@ impl Relief {
 }
 
 fn pipeline(gpu: &Gpu, bake: &Bake, groups: [&wgpu::BindGroupLayout; 2]) -> wgpu::RenderPipeline {
-    let frame = [include_str!("wgsl/frame.wgsl"), include_str!("wgsl/bare.wgsl")].concat();
+    let frame =
+        [include_str!("wgsl/frame.wgsl"), include_str!("wgsl/land.wgsl"), include_str!("wgsl/bare.wgsl")]
+            .concat();
     let relief = [include_str!("wgsl/relief.wgsl"), include_str!("wgsl/relief_mesh.wgsl")].concat();
-    let module = gpu.shader("relief", &(look_ups(bake.layout, Method::Table) + &frame + &relief));
+    let module = gpu.shader("relief", &(look_ups(bake, Method::Table) + &frame + &relief));
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: None,
         bind_group_layouts: &groups.map(Some),

@@ -11,8 +11,8 @@ const ELEK2010: &str = include_str!("../../sky/wgsl/elek2010.wgsl");
 const BINDINGS: &str = include_str!("wgsl/bindings.wgsl");
 const SKY_COMPACT: &str = include_str!("wgsl/sky_compact.wgsl");
 const SLICES: &str = include_str!("../../sky/wgsl/slices.wgsl");
-const COMPACT_SLICED: &str = include_str!("../../sky/wgsl/compact_sliced.wgsl");
 const SKY_MARCH: &str = include_str!("wgsl/sky_march.wgsl");
+const WATER: &str = include_str!("../../sky/wgsl/water.wgsl");
 const SKY_ELEK2010: &str = include_str!("wgsl/sky_elek2010.wgsl");
 
 /// How light is found.
@@ -26,18 +26,24 @@ pub enum Method {
 }
 
 /// The look-ups of a layout, the files that engines copy, and the preview's bindings of them.
-pub fn look_ups(layout: Layout, method: Method) -> String {
-    let parts = match (layout, method) {
-        (_, Method::March { .. }) => vec![SHELL, BINDINGS, SKY_MARCH],
-        (Layout::Compact, _) => vec![SHELL, SLICES, COMPACT, COMPACT_SLICED, BINDINGS, SKY_COMPACT],
-        (Layout::Elek2010, _) => vec![SHELL, SLICES, ELEK2010, BINDINGS, SKY_ELEK2010],
+pub fn look_ups(bake: &Bake, method: Method) -> String {
+    let tables = bake.uniforms.wgsl();
+    let parts = match (bake.layout, method) {
+        (_, Method::March { .. }) => vec![SHELL, BINDINGS, &tables, SKY_MARCH],
+        (Layout::Compact, _) => vec![SHELL, SLICES, COMPACT, BINDINGS, &tables, SKY_COMPACT],
+        (Layout::Elek2010, _) => vec![SHELL, SLICES, ELEK2010, BINDINGS, &tables, SKY_ELEK2010],
     };
     parts.join("\n")
 }
 
+/// The look-ups of a water; wants those of a layout.
+pub fn water_look_ups() -> String {
+    [WATER, include_str!("wgsl/sea_bindings.wgsl")].join("\n")
+}
+
 /// The pass that fills a frame's slices.
-pub fn slicing() -> String {
-    [SHELL, SLICES, BINDINGS, include_str!("wgsl/slice.wgsl")].join("\n")
+pub fn slicing(bake: &Bake) -> String {
+    [SHELL, SLICES, BINDINGS, &bake.uniforms.wgsl(), include_str!("wgsl/slice.wgsl")].join("\n")
 }
 
 /// Constants that a pipeline of the look-ups takes.
@@ -70,17 +76,16 @@ pub fn uniform_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry { binding, visibility: STAGES, ty, count: None }
 }
 
-fn texture_entry(binding: u32, view_dimension: wgpu::TextureViewDimension) -> wgpu::BindGroupLayoutEntry {
+pub fn texture_entry(binding: u32, view_dimension: wgpu::TextureViewDimension) -> wgpu::BindGroupLayoutEntry {
     let sample_type = wgpu::TextureSampleType::Float { filterable: true };
     let ty = wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false };
     wgpu::BindGroupLayoutEntry { binding, visibility: STAGES, ty, count: None }
 }
 
-fn entries() -> [wgpu::BindGroupLayoutEntry; 9] {
+fn entries() -> [wgpu::BindGroupLayoutEntry; 8] {
     use wgpu::TextureViewDimension::{D2, D2Array, D3};
     let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
     [
-        uniform_entry(0),
         wgpu::BindGroupLayoutEntry { binding: 1, visibility: STAGES, ty: sampler, count: None },
         texture_entry(2, D3),
         texture_entry(3, D3),
@@ -97,7 +102,6 @@ impl Baked {
     /// `Argument` for a table that is larger than this GPU's textures.
     pub fn new(gpu: &Gpu, bake: &Bake) -> Result<Baked> {
         use wgpu::TextureDimension::{D2, D3};
-        let tables = gpu.buffer(bytemuck::bytes_of(&bake.uniforms), wgpu::BufferUsages::UNIFORM);
         let volumes = [&bake.volume, &bake.single].map(|t| texture(gpu, t, D3));
         let planes =
             [&bake.depth, &bake.scatterers, &bake.irradiance, &bake.phase].map(|t| texture(gpu, t, D2));
@@ -112,8 +116,7 @@ impl Baked {
         let slices = slices(gpu, bake);
         let none = as_array(&texture(gpu, &Texels { size: [1, 1, 1], bits: vec![[0; 4]] }, D2)?);
         let with = slices.as_ref().map_or_else(|| none.clone(), as_array);
-        let [group, bare] =
-            [&with, &none].map(|last| bound(gpu, &layout, &tables, views.iter().chain([last])));
+        let [group, bare] = [&with, &none].map(|last| bound(gpu, &layout, views.iter().chain([last])));
         Ok(Baked { layout, group, bare, slices })
     }
 }
@@ -123,11 +126,10 @@ fn as_array(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() })
 }
 
-/// Uniform, sampler, and the textures in the order of their bindings.
+/// Sampler, and the textures in the order of their bindings.
 fn bound<'a>(
     gpu: &Gpu,
     layout: &wgpu::BindGroupLayout,
-    tables: &wgpu::Buffer,
     views: impl Iterator<Item = &'a wgpu::TextureView>,
 ) -> wgpu::BindGroup {
     let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
@@ -135,10 +137,8 @@ fn bound<'a>(
         min_filter: wgpu::FilterMode::Linear,
         ..Default::default()
     });
-    let mut entries = vec![
-        wgpu::BindGroupEntry { binding: 0, resource: tables.as_entire_binding() },
-        wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&sampler) },
-    ];
+    let sampler = wgpu::BindingResource::Sampler(&sampler);
+    let mut entries = vec![wgpu::BindGroupEntry { binding: 1, resource: sampler }];
     for (k, view) in views.enumerate() {
         let resource = wgpu::BindingResource::TextureView(view);
         entries.push(wgpu::BindGroupEntry { binding: k as u32 + 2, resource });
@@ -195,7 +195,7 @@ pub fn march_resources(gpu: &Gpu, bake: &Bake, method: Method) -> Result<Resourc
     Ok(Resources { layout, group })
 }
 
-fn texture(gpu: &Gpu, texels: &Texels, dimension: wgpu::TextureDimension) -> Result<wgpu::Texture> {
+pub fn texture(gpu: &Gpu, texels: &Texels, dimension: wgpu::TextureDimension) -> Result<wgpu::Texture> {
     use wgpu::util::DeviceExt;
     let limits = gpu.device.limits();
     let most = match dimension {

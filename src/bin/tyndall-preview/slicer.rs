@@ -27,7 +27,7 @@ fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
 
 impl Slicer {
     /// None on GPUs that cannot filter slices, and where texels are weighed by hand.
-    pub fn new(gpu: &Gpu, baked: &Baked, hand_filtered: bool) -> Option<Slicer> {
+    pub fn new(gpu: &Gpu, bake: &Bake, baked: &Baked, hand_filtered: bool) -> Option<Slicer> {
         let texture = baked.slices.as_ref().filter(|_| !hand_filtered)?;
         let layout = layout(gpu);
         let layouts = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -39,7 +39,7 @@ impl Slicer {
         let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some("slices"),
             layout: Some(&layouts),
-            module: &gpu.shader("slices", &slicing()),
+            module: &gpu.shader("slices", &slicing(bake)),
             entry_point: Some("slice"),
             compilation_options: wgpu::PipelineCompilationOptions {
                 constants: &constants,

@@ -1,4 +1,4 @@
-//! How long a pass takes: by the GPU's own clock where it has one, else from submission to the end of the wait.
+//! How long a frame takes, all its passes: by the GPU's own clock where it has one, else from submission to the end of the wait.
 
 use crate::gpu::Gpu;
 use std::time::Instant;
@@ -34,7 +34,8 @@ pub struct Stopwatch {
 
 impl Stopwatch {
     pub fn new(gpu: &Gpu) -> Self {
-        let has = gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
+        let stamps = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS;
+        let has = gpu.device.features().contains(stamps);
         let clock = has.then(|| Clock {
             queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: None,
@@ -51,13 +52,8 @@ impl Stopwatch {
         if self.clock.is_some() { "times by the GPU's clock" } else { "times from submission to completion" }
     }
 
-    /// Times of a pass that `draw` records, after three frames that warm up.
-    pub fn times(
-        &self,
-        gpu: &Gpu,
-        frames: u32,
-        draw: impl Fn(&mut wgpu::CommandEncoder, Option<wgpu::RenderPassTimestampWrites<'_>>),
-    ) -> Result<Times> {
+    /// Times of what `draw` records, after three frames that warm up.
+    pub fn times(&self, gpu: &Gpu, frames: u32, draw: impl Fn(&mut wgpu::CommandEncoder)) -> Result<Times> {
         let mut ms = Vec::new();
         for k in 0..frames + 3 {
             let once = self.once(gpu, &draw)?;
@@ -68,25 +64,18 @@ impl Stopwatch {
         Ok(Times::of(ms))
     }
 
-    fn once(
-        &self,
-        gpu: &Gpu,
-        draw: &impl Fn(&mut wgpu::CommandEncoder, Option<wgpu::RenderPassTimestampWrites<'_>>),
-    ) -> Result<f64> {
+    fn once(&self, gpu: &Gpu, draw: &impl Fn(&mut wgpu::CommandEncoder)) -> Result<f64> {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let start = Instant::now();
         let Some(clock) = &self.clock else {
-            draw(&mut encoder, None);
+            draw(&mut encoder);
             gpu.queue.submit([encoder.finish()]);
             gpu.wait()?;
             return Ok(1e3 * start.elapsed().as_secs_f64());
         };
-        let writes = wgpu::RenderPassTimestampWrites {
-            query_set: &clock.queries,
-            beginning_of_pass_write_index: Some(0),
-            end_of_pass_write_index: Some(1),
-        };
-        draw(&mut encoder, Some(writes));
+        encoder.write_timestamp(&clock.queries, 0);
+        draw(&mut encoder);
+        encoder.write_timestamp(&clock.queries, 1);
         encoder.resolve_query_set(&clock.queries, 0..2, &clock.resolved, 0);
         encoder.copy_buffer_to_buffer(&clock.resolved, 0, &clock.readable, 0, 16);
         gpu.queue.submit([encoder.finish()]);

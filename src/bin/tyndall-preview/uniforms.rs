@@ -1,4 +1,5 @@
-//! What the look-up shaders need of `bake.json`, in the form that `shell.wgsl` declares.
+//! What the look-up shaders need of `bake.json`, in the form that `shell.wgsl` declares, written into them as constants:
+//! compilers then drop what a bake does not have, and a pixel loads nothing of it.
 
 use bytemuck::{Pod, Zeroable};
 use tyndall::export::manifest::{EncodingKind, Manifest, Table};
@@ -6,7 +7,7 @@ use tyndall::export::manifest::{EncodingKind, Manifest, Table};
 /// As many groups of single scattering as `shell.wgsl` has room for.
 pub const MOST_GROUPS: usize = 6;
 
-/// `Table` of `shell.wgsl`.
+/// `Table` of `shell.wgsl`; a part of the uniform of a water, which changes by a key.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct TableUniform {
@@ -21,8 +22,7 @@ pub struct TableUniform {
 }
 
 /// `Tables` of `shell.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TablesUniform {
     pub volume: TableUniform,
     pub single: TableUniform,
@@ -61,6 +61,12 @@ impl TableUniform {
         out
     }
 
+    fn wgsl(&self) -> String {
+        let rows =
+            [self.size, self.radii, self.bends, self.sun, self.scale, self.offset, self.floor, self.log];
+        format!("Table({})", vectors(&rows))
+    }
+
     fn set_decoding(&mut self, table: &Table) {
         for (k, channel) in table.channels.iter().enumerate().take(4) {
             let encoding = channel.encoding.as_ref().unwrap_or(&table.encoding);
@@ -78,6 +84,28 @@ impl TableUniform {
     }
 }
 
+impl TablesUniform {
+    /// The declaration of the constant `tables`.
+    pub fn wgsl(&self) -> String {
+        let tables = [self.volume, self.single, self.depth, self.scatterers, self.irradiance, self.phase];
+        format!(
+            "const tables = Tables({}, array({}), array({}), {}, array({}), {});",
+            tables.map(|t| t.wgsl()).join(", "),
+            vectors(&self.group_scale),
+            vectors(&self.group_offset),
+            vectors(&[self.ground_albedo]),
+            vectors(&self.rgb),
+            vectors(&[self.counts]),
+        )
+    }
+}
+
+/// Each with all its digits. WGSL has no word for what is not finite, which no sound bake holds.
+fn vectors(rows: &[[f32; 4]]) -> String {
+    let number = |v: f32| format!("{:e}", if v.is_finite() { v } else { f32::MAX });
+    rows.iter().map(|row| format!("vec4f({})", row.map(number).join(", "))).collect::<Vec<_>>().join(", ")
+}
+
 /// Up to four numbers as a vector, the rest 0.
 pub fn four(values: &[f64]) -> [f32; 4] {
     let mut out = [0.0; 4];
@@ -85,13 +113,29 @@ pub fn four(values: &[f64]) -> [f32; 4] {
     out
 }
 
-/// The rows of `rgb_from_four` over the star's illuminance.
-pub fn rgb_rows(manifest: &Manifest, illuminance: f64) -> [[f32; 4]; 3] {
+/// The rows of a matrix of the manifest, over the star's illuminance.
+pub fn rgb_rows(manifest: &Manifest, matrix: &str, illuminance: f64) -> [[f32; 4]; 3] {
     let mut out = [[0.0; 4]; 3];
-    if let Some(rows) = manifest.colour.matrices.get("rgb_from_four") {
+    if let Some(rows) = manifest.colour.matrices.get(matrix) {
         for (slot, row) in out.iter_mut().zip(rows) {
             *slot = four(&row.iter().map(|v| v / illuminance).collect::<Vec<_>>());
         }
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers keep their digits, whatever their size, and a word that WGSL does not know is never written.
+    #[test]
+    fn constants_keep_their_digits() {
+        let row = [0.1, -3.4028235e38, 1e-45, f32::NAN];
+        let text = vectors(&[row]);
+        let inner = text.strip_prefix("vec4f(").unwrap().strip_suffix(')').unwrap();
+        let back: Vec<f32> = inner.split(", ").map(|v| v.parse().unwrap()).collect();
+        assert_eq!(back, [row[0], row[1], row[2], f32::MAX], "{text}");
+        assert!(TablesUniform::default().wgsl().matches("vec4f(").count() == 6 * 8 + 6 + 6 + 1 + 3 + 1);
+    }
 }

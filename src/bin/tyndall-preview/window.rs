@@ -1,9 +1,9 @@
 //! The window: events to controls, controls to frames.
 
 use crate::bake::{Bake, Layout};
-use crate::camera::Kind;
+use crate::camera::{Camera, Kind};
 use crate::controls::{Controls, Request, TITLE_KEYS};
-use crate::exposure::{self, factor};
+use crate::exposure::{self, Exposure, factor};
 use crate::frame::{FrameUniform, View};
 use crate::gpu::{Gpu, failed};
 use crate::headless::{pixels, write_rgba};
@@ -32,9 +32,11 @@ pub fn run(options: &Options, bake: Bake) -> Result<()> {
     events.set_control_flow(ControlFlow::Poll);
     let view = options.view(&bake)?;
     let method = options.method(&bake)?;
-    let controls = Controls::new(&view, options.exposure, method, options.steps, bake.radii());
+    let mut controls = Controls::new(&view, options.exposure, method, options.steps, bake.radii());
+    controls.deepest = deepest(&bake);
     let mut app = App {
         hand_filtered: options.hand_filtered,
+        lose_device: options.lose_device,
         relief: options.relief,
         size: options.size,
         written: written(&bake.folder),
@@ -42,6 +44,8 @@ pub fn run(options: &Options, bake: Bake) -> Result<()> {
         controls,
         shown: None,
         clock: Instant::now(),
+        titled: None,
+        exposed: None,
         looked: Instant::now(),
         shots: 0,
         failure: None,
@@ -60,6 +64,7 @@ struct Shown {
 
 struct App {
     hand_filtered: bool,
+    lose_device: bool,
     relief: bool,
     size: [u32; 2],
     bake: Bake,
@@ -67,11 +72,20 @@ struct App {
     shown: Option<Shown>,
     /// Of the last frame.
     clock: Instant,
+    /// When the title was last written.
+    titled: Option<Instant>,
+    /// What the last exposure was found for, and what it was.
+    exposed: Option<((Exposure, Camera, f64, f64), f64)>,
     /// When the bake's file was last looked at, and when it had been written.
     looked: Instant,
     written: Option<SystemTime>,
     shots: u32,
     failure: Option<tyndall::Error>,
+}
+
+/// The deepest water that can be shown, m; 0 of land.
+fn deepest(bake: &Bake) -> f64 {
+    bake.water.as_ref().map_or(0.0, |w| w.sky.largest_depth)
 }
 
 fn written(folder: &Path) -> Option<SystemTime> {
@@ -115,16 +129,46 @@ impl App {
 
     /// Another bake or layout; what cannot be read leaves the one that is shown, with a line on stderr.
     fn load(&mut self, folder: &Path, layout: Option<Layout>) {
-        let opened = Bake::open(folder, layout);
+        // The water of before, where the new bake has it too.
+        let water = self.bake.water.as_ref().map(|w| w.name.clone());
+        let opened = Bake::open(folder, layout).and_then(|bake| {
+            let kept = water.filter(|name| bake.waters().any(|w| w == name));
+            bake.with_water(kept.as_deref())
+        });
+        self.show(opened);
+        self.written = written(folder);
+    }
+
+    fn show(&mut self, opened: Result<Bake>) {
         let outcome = opened.and_then(|bake| {
             let before = std::mem::replace(&mut self.bake, bake);
-            self.controls.radii = self.bake.radii();
+            self.exposed = None;
             self.rebuild().inspect_err(|_| self.bake = before)
         });
-        self.written = written(folder);
+        self.controls.radii = self.bake.radii();
+        self.controls.deepest = deepest(&self.bake);
+        if self.bake.water.is_some() {
+            self.controls.depth = self.controls.depth.min(self.controls.deepest);
+        }
         if let Err(error) = outcome {
             eprintln!("error: {error}");
         }
+    }
+
+    /// The next water of the bake; after the last, land.
+    fn switch_water(&mut self) {
+        let shown = self.bake.water.as_ref().map(|w| w.name.as_str());
+        let next = match shown {
+            None => self.bake.waters().next(),
+            Some(name) => self.bake.waters().skip_while(|w| *w != name).nth(1),
+        };
+        if next.is_none() && shown.is_none() {
+            eprintln!("no waters in this bake (tyndall bake PRESET --waters NAME)");
+            return;
+        }
+        let next = next.map(str::to_string);
+        let opened = Bake::open(&self.bake.folder, Some(self.bake.layout));
+        self.show(opened.and_then(|bake| bake.with_water(next.as_deref())));
     }
 
     fn reload_if_written(&mut self) {
@@ -144,12 +188,35 @@ impl App {
         }
     }
 
-    fn view(&self, size: [u32; 2]) -> View {
-        let aspect = f64::from(size[0]) / f64::from(size[1]);
+    /// What 1 cd/m² becomes, found anew where something has changed.
+    fn exposure(&mut self, aspect: f64) -> f64 {
         let c = &self.controls;
-        let exposure = factor(c.exposure, &self.bake, &c.camera, aspect);
+        let wanted = (c.exposure, c.camera, aspect, c.depth);
+        match self.exposed {
+            Some((found_for, exposure)) if found_for == wanted => exposure,
+            _ => {
+                let exposure = factor(c.exposure, &self.bake, &c.camera, aspect, c.depth);
+                self.exposed = Some((wanted, exposure));
+                exposure
+            }
+        }
+    }
+
+    fn view(&mut self, size: [u32; 2]) -> View {
+        let exposure = self.exposure(f64::from(size[0]) / f64::from(size[1]));
+        let c = &self.controls;
         let g = c.g.filter(|_| self.bake.layout == Layout::Elek2010);
-        View { camera: c.camera, size, exposure, tone_mapping: c.tone_mapping, horizon_mended: true, g }
+        let (tone_mapping, water_depth) = (c.tone_mapping, c.depth);
+        View { camera: c.camera, size, exposure, tone_mapping, horizon_mended: true, g, water_depth }
+    }
+
+    /// The title, some times a second: servers take long over it.
+    fn new_title(&mut self, view: &View, dt: f64) -> Option<String> {
+        if self.titled.is_some_and(|t| t.elapsed() < Duration::from_millis(200)) {
+            return None;
+        }
+        self.titled = Some(Instant::now());
+        Some(self.title(view, 1.0 / dt.max(1e-3)))
     }
 
     fn title(&self, view: &View, fps: f64) -> String {
@@ -159,8 +226,11 @@ impl App {
             Method::March { sun: 0, .. } => "march, 2D table",
             Method::March { .. } => "march",
         };
+        let water = self.bake.water.as_ref();
+        let water =
+            water.map_or(String::new(), |w| format!(", {} {:.1} m deep", w.name, self.controls.depth));
         format!(
-            "{} {} {method} | {:.0} m, star {:.1}°, EV {:.1} | {fps:.0}/s | {TITLE_KEYS}",
+            "{} {} {method}{water} | {:.0} m, star {:.1}°, EV {:.1} | {fps:.0}/s | {TITLE_KEYS}",
             self.bake.manifest.preset.name,
             self.bake.layout.name(),
             camera.altitude,
@@ -181,23 +251,28 @@ impl App {
             return Ok(());
         }
         let view = self.view(size);
-        let title = self.title(&view, 1.0 / dt.max(1e-3));
+        let title = self.new_title(&view, dt);
         let uniform = FrameUniform::new(&self.bake, &view);
         let bake = &self.bake;
         let Some(shown) = &mut self.shown else { return Ok(()) };
-        shown.window.set_title(&title);
+        if let Some(title) = title {
+            shown.window.set_title(&title);
+        }
         let Shown { gpu, painter, .. } = &*shown;
-        shown.screen.show(gpu, |encoder, target| painter.draw(gpu, bake, encoder, target, &uniform, None))?;
+        shown.screen.show(gpu, |encoder, target| painter.draw(gpu, bake, encoder, target, &uniform))?;
+        if self.lose_device {
+            shown.gpu.device.destroy();
+        }
         shown.gpu.check()
     }
 
     fn screenshot(&mut self) -> Result<()> {
-        let Some(shown) = &self.shown else { return Ok(()) };
-        let size = shown.screen.size();
-        if size.contains(&0) {
+        let Some(size) = self.shown.as_ref().map(|s| s.screen.size()).filter(|s| !s.contains(&0)) else {
             return Ok(());
-        }
-        let bytes = pixels(&shown.gpu, &self.bake, &self.view(size), &self.look(SHOWN, size))?;
+        };
+        let view = self.view(size);
+        let Some(shown) = &self.shown else { return Ok(()) };
+        let bytes = pixels(&shown.gpu, &self.bake, &view, &self.look(SHOWN, size))?;
         let mut path = PathBuf::new();
         while path.as_os_str().is_empty() || path.exists() {
             self.shots += 1;
@@ -216,6 +291,10 @@ impl App {
             Request::SwitchLayout => {
                 let folder = self.bake.folder.clone();
                 self.load(&folder, Some(self.bake.layout.other()));
+                Ok(())
+            }
+            Request::SwitchWater => {
+                self.switch_water();
                 Ok(())
             }
             Request::Quit => {

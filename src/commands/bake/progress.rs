@@ -1,6 +1,7 @@
 //! How bakes get on: a bar each on a terminal, a line at begin and end elsewhere; and the times of their stages.
 
 use crate::bake::settings::{Layout, Settings};
+use crate::clock::cpu_time;
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
@@ -69,7 +70,7 @@ pub fn stages(settings: &Settings) -> usize {
     const ALWAYS: usize = 8;
     let has = |layout| usize::from(settings.layouts.contains(&layout));
     let waters = usize::from(!settings.waters.list.is_empty());
-    ALWAYS + has(Layout::Elek2010) + has(Layout::Compact) + waters
+    ALWAYS + has(Layout::Elek2010) + has(Layout::Compact) + has(Layout::ThreeAtmosphere) + waters
 }
 
 /// Times the stages of one bake and moves its bar.
@@ -113,15 +114,4 @@ impl Drop for Clock {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }
-}
-
-/// Processor time of this process so far, all threads; zero where the system does not tell.
-fn cpu_time() -> Duration {
-    #[cfg(target_os = "linux")]
-    {
-        let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
-        Duration::new(time.tv_sec.max(0) as u64, time.tv_nsec.max(0) as u32)
-    }
-    #[cfg(not(target_os = "linux"))]
-    Duration::ZERO
 }

@@ -7,6 +7,7 @@ use crate::bake::settings::{Layout, Settings, Solver, Storage};
 use crate::bake::water::Waters;
 use crate::error::{Error, Result};
 use crate::export::container::Container;
+use crate::methods::literal::Gather;
 use crate::preset;
 use crate::spectrum::Rgb;
 use crate::table::Elek2010;
@@ -27,7 +28,11 @@ pub fn settings(args: &Args) -> Result<Settings> {
         orders: args.orders,
         wavelengths_nm,
         rgb: Rgb { space: args.colour_space, white: args.white.map(|white| (white, args.adaptation)) },
-        solver: if literal { Solver::Literal { samples: 30 } } else { Solver::Moments },
+        solver: if literal {
+            Solver::Literal { samples: 30, gather: Gather::PerPoint }
+        } else {
+            Solver::Moments
+        },
         spectral: args.spectral,
         storage: storage(args),
         waters,
@@ -59,6 +64,10 @@ pub fn settings(args: &Args) -> Result<Settings> {
             "elek2010" => settings.elek2010_size = size,
             "compact" => settings.compact_sizes = Sizes { multiple: size, ..settings.compact_sizes },
             "compact-single" => settings.compact_sizes = Sizes { single: size, ..settings.compact_sizes },
+            "three-atmosphere" => {
+                let fixed = "the sizes of three-atmosphere are compiled into its reader";
+                return Err(Error::Argument(format!("--size {text}: {fixed}")));
+            }
             other => {
                 let known = "elek2010, compact, compact-single or water";
                 return Err(Error::Argument(format!("--size {text}: {other} is not one of {known}")));

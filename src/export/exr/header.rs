@@ -1,6 +1,7 @@
 //! An atlas' sizes, channels and attributes as the header of an EXR file.
 
 use crate::export::atlas::{Atlas, Attribute, Channel, Samples};
+use crate::export::manifest::Origin;
 use exr::math::RoundingMode;
 use exr::meta::BlockDescription;
 use exr::meta::attribute::{
@@ -11,6 +12,9 @@ use exr::prelude::{Compression, Vec2};
 
 /// The attributes that tell how slices lie in the picture, in the order of [`packing`].
 pub const PACKING: [&str; 5] = ["sliceWidth", "sliceHeight", "slices", "columns", "rows"];
+
+/// The attribute of a picture that is upside down, and what it says.
+pub const ORIGIN: (&str, &str) = ("origin", "bottom-left");
 
 fn packing(atlas: &Atlas) -> [usize; 5] {
     [atlas.width, atlas.height, atlas.slices, atlas.columns, atlas.rows()]
@@ -28,7 +32,10 @@ pub fn header(atlas: &Atlas) -> Header {
     // After the caller's, which cannot replace them.
     let packing = PACKING.into_iter().zip(packing(atlas));
     let packing = packing.map(|(name, n)| (text(name), AttributeValue::I32(n as i32)));
-    let attributes = LayerAttributes { other: custom.chain(packing).collect(), ..Default::default() };
+    let turned =
+        (atlas.origin == Origin::BottomLeft).then(|| (text(ORIGIN.0), AttributeValue::Text(text(ORIGIN.1))));
+    let other = custom.chain(packing).chain(turned).collect();
+    let attributes = LayerAttributes { other, ..Default::default() };
     Header::new(text(""), (atlas.width * atlas.columns, atlas.height * atlas.rows()), channels)
         .with_encoding(Compression::ZIP16, BlockDescription::Tiles(tiles), LineOrder::Increasing)
         .with_attributes(attributes)

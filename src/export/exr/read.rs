@@ -4,6 +4,7 @@
 use super::header;
 use crate::error::{Error, Result};
 use crate::export::atlas::{Atlas, Attribute, Channel, Samples};
+use crate::export::manifest::Origin;
 use exr::block::UncompressedBlock;
 use exr::block::chunk::{Chunk, CompressedBlock, TileCoordinates};
 use exr::block::reader::{ChunksReader, Reader};
@@ -38,11 +39,14 @@ fn parse(name: String, bytes: &[u8]) -> Read<Atlas> {
     let mut atlas = empty_atlas(name, header)?;
     let types = channel_types(header)?;
     check_size(header, &types, bytes.len())?;
-    let (meta, mut stored) = stored_tiles(reader, atlas.columns)?;
-    stored.truncate(atlas.slices);
+    let (meta, stored) = stored_tiles(reader, atlas.columns)?;
+    let mut stored: Vec<(usize, Chunk)> =
+        stored.into_iter().enumerate().map(|(place, tile)| (atlas.slice_at(place), tile)).collect();
+    stored.retain(|(slice, _)| *slice < atlas.slices);
+    stored.sort_by_key(|(slice, _)| *slice);
     let tiles: Vec<Vec<u8>> = stored
         .into_par_iter()
-        .map(|tile| UncompressedBlock::decompress_chunk(tile, &meta, true).map(|block| block.data))
+        .map(|(_, tile)| UncompressedBlock::decompress_chunk(tile, &meta, true).map(|block| block.data))
         .collect::<exr::error::Result<_>>()
         .map_err(reason)?;
     atlas.channels = unravel(&atlas, &types, &tiles);
@@ -80,7 +84,12 @@ fn empty_atlas(name: String, header: &Header) -> Read<Atlas> {
         *slot = usize::try_from(v).ok().filter(|&v| v > 0).ok_or(format!("damaged header: {key} = {v}"))?;
     }
     let [width, height, slices, columns, rows] = packing;
-    let atlas = Atlas { name, width, height, slices, columns, channels: Vec::new(), attributes };
+    let origin = match attributes.remove(header::ORIGIN.0) {
+        None => Origin::TopLeft,
+        Some(Attribute::Text(text)) if text == header::ORIGIN.1 => Origin::BottomLeft,
+        Some(other) => return Err(format!("damaged header: {} = {other:?}", header::ORIGIN.0)),
+    };
+    let atlas = Atlas { name, width, height, slices, columns, origin, channels: Vec::new(), attributes };
     let position = header.own_attributes.layer_position;
     // Each factor comes from 31 bits.
     let picture = Vec2(width * columns, height * rows);
@@ -155,10 +164,14 @@ fn stored_tiles(reader: Reader<Cursor<&[u8]>>, columns: usize) -> Read<(MetaData
 fn unravel(atlas: &Atlas, types: &[(String, usize)], tiles: &[Vec<u8>]) -> Vec<Channel> {
     let line_bytes: usize = types.iter().map(|(_, bytes)| bytes * atlas.width).sum();
     let before = |k: usize| types[..k].iter().map(|(_, bytes)| bytes * atlas.width).sum::<usize>();
+    let line = |n: usize| {
+        let (slice, y) = (n / atlas.height, n % atlas.height);
+        &tiles[slice][atlas.y_of_line(y) * line_bytes..][..line_bytes]
+    };
     let channel = |(k, (name, bytes)): (usize, &(String, usize))| {
         let place = before(k)..before(k) + bytes * atlas.width;
         let mut stream = Vec::with_capacity(atlas.slices * atlas.slice_len() * bytes);
-        for line in tiles.iter().flat_map(|tile| tile.chunks_exact(line_bytes)) {
+        for line in (0..tiles.len() * atlas.height).map(line) {
             stream.extend_from_slice(&line[place.clone()]);
         }
         // The crate gives samples in the machine's byte order.

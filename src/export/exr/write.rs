@@ -43,17 +43,18 @@ fn compressed_tiles(atlas: &Atlas, meta: &MetaData) -> exr::error::Result<Vec<Ch
         .collect()
 }
 
-/// A slice in EXR's order: line by line, in a line channel by channel. A tiled file must hold every tile, so
-/// the empty places after the last slice are tiles of zeros.
-fn raw_tile(atlas: &Atlas, channels: &[&Channel], slice: usize) -> Vec<u8> {
+/// The tile at a place of the grid in EXR's order: line by line, in a line channel by channel. A tiled file must hold
+/// every tile, so the empty places after the last slice are tiles of zeros.
+fn raw_tile(atlas: &Atlas, channels: &[&Channel], place: usize) -> Vec<u8> {
+    let slice = atlas.slice_at(place);
     let line_bytes: usize = channels.iter().map(|c| c.samples.bytes() * atlas.width).sum();
     let mut raw = Vec::with_capacity(line_bytes * atlas.height);
     if slice >= atlas.slices {
         raw.resize(line_bytes * atlas.height, 0);
         return raw;
     }
-    for y in 0..atlas.height {
-        let start = slice * atlas.slice_len() + y * atlas.width;
+    for line in 0..atlas.height {
+        let start = slice * atlas.slice_len() + atlas.y_of_line(line) * atlas.width;
         let line = start..start + atlas.width;
         for channel in channels {
             match &channel.samples {

@@ -116,6 +116,13 @@ impl Air {
     }
 }
 
+impl Air {
+    /// Whether anything of a species scatters.
+    pub fn has(&self, species: usize) -> bool {
+        self.parts.iter().any(|p| p.species == species && p.scattering != Lanes::ZERO)
+    }
+}
+
 /// The phase function that all scatterers of a role share, as a + b ν²; zero where there is none.
 fn species_phase(medium: &Medium, role: Role) -> Result<Quadratic> {
     let (mut a, mut b) = (Lanes::ZERO, Lanes::ZERO);

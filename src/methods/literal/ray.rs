@@ -14,9 +14,9 @@ pub struct Sample {
     s: f64,
     radius: f64,
     pub altitude: f64,
-    mu: f64,
+    pub mu: f64,
     /// U and V of P and the ray's direction.
-    u: Texel,
+    pub u: Texel,
     v: Texel,
     /// For gas and aerosol: σ ρ(P) e^−t(P_a, P) ds, with the weight of the trapezoidal rule in ds.
     pub strength: [Lanes; 2],
@@ -86,13 +86,20 @@ impl Ray {
         ((self.radius * mu_s + sample.s * nu) / sample.radius).clamp(-1.0, 1.0)
     }
 
-    /// Texels around a sample, the ray's direction and the sun; none where it is dark.
+    /// At a sample, cosines of the sun's zenith angle and of the azimuth between it and the ray.
     #[inline(always)]
-    pub fn place(&self, map: &Elek2010, sample: &Sample, mu_s: f64, nu: f64) -> Option<[Texel; 4]> {
+    pub fn sun_at(&self, sample: &Sample, mu_s: f64, nu: f64) -> (f64, f64) {
         let mu_s_here = self.mu_s_at(sample, mu_s, nu);
         let sines = ((1.0 - sample.mu * sample.mu) * (1.0 - mu_s_here * mu_s_here)).max(0.0).sqrt();
         // Along the vertical, or with the sun in it, every azimuth is the same.
         let cos_azimuth = if sines > 1e-12 { (nu - sample.mu * mu_s_here) / sines } else { 1.0 };
+        (mu_s_here, cos_azimuth)
+    }
+
+    /// Texels around a sample, the ray's direction and the sun; none where it is dark.
+    #[inline(always)]
+    pub fn place(&self, map: &Elek2010, sample: &Sample, mu_s: f64, nu: f64) -> Option<[Texel; 4]> {
+        let (mu_s_here, cos_azimuth) = self.sun_at(sample, mu_s, nu);
         map.sun_texels(mu_s_here, cos_azimuth).map(|[w, r]| [sample.u, sample.v, w, r])
     }
 }

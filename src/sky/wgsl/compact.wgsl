@@ -23,11 +23,28 @@ fn compact_fill(
     return source * opacity(depth_at(t.depth, depth, filtering, p));
 }
 
-// Light that the air scatters into a view, at the four wavelengths, 1/sr.
-fn compact_scattering(
+// Stored samples of a view: more than once scattered light, then each group's.
+fn compact_fetch(
     t: Tables,
     multiple: texture_3d<f32>,
     single: texture_3d<f32>,
+    filtering: sampler,
+    p: Place,
+) -> array<vec4f, 7> {
+    var stored = array<vec4f, 7>();
+    stored[0] = fetch_4d(t.volume, multiple, filtering, volume_texel(t.volume, p), 0.0);
+    let at = volume_texel(t.single, p);
+    for (var k = 0; k < i32(t.counts.x); k++) {
+        stored[k + 1] = fetch_4d(t.single, single, filtering, at, f32(k));
+    }
+    return stored;
+}
+
+// Light that the air scatters into a view, at the four wavelengths, 1/sr, from its stored samples: those of
+// `compact_fetch`, or of `fetch_slices` in slices.wgsl.
+fn compact_scattering(
+    t: Tables,
+    stored: array<vec4f, 7>,
     depth: texture_2d<f32>,
     scatterers: texture_2d<f32>,
     phase: texture_2d<f32>,
@@ -37,27 +54,9 @@ fn compact_scattering(
     if !p.inside || !sun_is_up(t.volume, p.mu_s) {
         return vec4f(0.0);
     }
-    var source = decode(t.volume, fetch_4d(t.volume, multiple, filtering, volume_texel(t.volume, p), 0.0));
-    let at = volume_texel(t.single, p);
-    let groups = i32(t.counts.x);
-    // Each group by its number: compilers then know which decoding it wants.
-    if groups > 0 {
-        source += compact_group(t, fetch_4d(t.single, single, filtering, at, 0.0), phase, filtering, p.nu, 0);
-    }
-    if groups > 1 {
-        source += compact_group(t, fetch_4d(t.single, single, filtering, at, 1.0), phase, filtering, p.nu, 1);
-    }
-    if groups > 2 {
-        source += compact_group(t, fetch_4d(t.single, single, filtering, at, 2.0), phase, filtering, p.nu, 2);
-    }
-    if groups > 3 {
-        source += compact_group(t, fetch_4d(t.single, single, filtering, at, 3.0), phase, filtering, p.nu, 3);
-    }
-    if groups > 4 {
-        source += compact_group(t, fetch_4d(t.single, single, filtering, at, 4.0), phase, filtering, p.nu, 4);
-    }
-    if groups > 5 {
-        source += compact_group(t, fetch_4d(t.single, single, filtering, at, 5.0), phase, filtering, p.nu, 5);
+    var source = decode(t.volume, stored[0]);
+    for (var k = 0; k < i32(t.counts.x); k++) {
+        source += compact_group(t, stored[k + 1], phase, filtering, p.nu, k);
     }
     return compact_fill(t, source, depth, scatterers, filtering, p);
 }

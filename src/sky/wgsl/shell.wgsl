@@ -14,7 +14,8 @@
 //  - Samples are interpolated as they are stored, then decoded. Textures are half-float RGBA and want linear filtering.
 //    Most GPUs weigh texels in steps of 1/256, which a table of logarithms shows where neighbours differ by much: at
 //    the dark edge by 4 %. With HAND_FILTERED the weights are those of f32.
-//  - Everything that these functions need of bake.json is in `Tables`, made by the code that loads the textures.
+//  - Everything that these functions need of bake.json is in `Tables`, made by the code that loads the textures: a constant
+//    written into the shader, or a uniform.
 
 override HAND_FILTERED: bool = false;
 

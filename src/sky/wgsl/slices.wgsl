@@ -31,3 +31,13 @@ fn fetch_sliced(t: Table, slices: texture_2d_array<f32>, filtering: sampler, p: 
     let at = vec2f(texel(p.azimuth, t.size.w), view_texel(t, p));
     return textureSampleLevel(slices, filtering, (at + 0.5) / vec2f(textureDimensions(slices)), layer, 0.0);
 }
+
+// Stored samples of a view of the slices' altitude and sun, of all layers.
+fn fetch_slices(t: Tables, slices: texture_2d_array<f32>, filtering: sampler, p: Place) -> array<vec4f, 7> {
+    var stored = array<vec4f, 7>();
+    stored[0] = fetch_sliced(t.volume, slices, filtering, p, 0);
+    for (var k = 1; k <= i32(t.counts.x); k++) {
+        stored[k] = fetch_sliced(t.single, slices, filtering, p, k);
+    }
+    return stored;
+}

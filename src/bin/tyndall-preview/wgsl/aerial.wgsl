@@ -46,6 +46,10 @@ fn relief_seen(d: vec3f, pixel: vec2f) -> vec3f {
     let p = enter(tables.volume, frame.observer.x, d.y, frame.sun.y, dot(d, frame.sun.xyz));
     let q = along_ray(p, s);
     let at = s * d.xz;
+    // Where the relief is level, the sea is.
+    if SEA && relief_height(at) <= 0.0 {
+        return vec3f(-1.0);
+    }
     let h = max(2.0, 0.001 * s);
     let slope = vec2f(
         relief_rise(at + vec2f(h, 0.0)) - relief_rise(at - vec2f(h, 0.0)),

@@ -17,6 +17,8 @@ struct Frame {
     picture: vec4f,
     // Rows: from the bake's RGB to linear sRGB.
     display: array<vec4f, 3>,
+    // Depth of the water in m, where there is water.
+    water: vec4f,
 }
 
 @group(1) @binding(0) var<uniform> frame: Frame;
@@ -47,10 +49,9 @@ fn direction(pixel: vec2f) -> vec3f {
 }
 
 // Radiance of the star's disc over its irradiance, mean 1 / (pi sin^2 radius), darker to the limb. A disc smaller than
-// a pixel is spread over one.
-fn star(d: vec3f) -> f32 {
+// a pixel, an angle in rad, is spread over one.
+fn disc(d: vec3f, pixel: f32) -> f32 {
     let toward = dot(d, frame.sun.xyz);
-    let pixel = frame.picture.z;
     let radius = max(frame.sun.w, 0.5 * pixel);
     let off = length(cross(d, frame.sun.xyz));
     if toward <= 0.0 || off > radius + pixel {
@@ -63,6 +64,10 @@ fn star(d: vec3f) -> f32 {
     return cover * limb / (3.14159265 * sin(radius) * sin(radius));
 }
 
+fn star(d: vec3f) -> f32 {
+    return disc(d, frame.picture.z);
+}
+
 // Linear RGB of the bake's colour space, luminance over the star's illuminance, from a direction.
 fn seen(d: vec3f) -> vec3f {
     let p = enter(tables.volume, frame.observer.x, d.y, frame.sun.y, dot(d, frame.sun.xyz));
@@ -70,14 +75,12 @@ fn seen(d: vec3f) -> vec3f {
         return rgb_of(tables, vec4f(star(d)));
     }
     let light = scattered_here(p, frame.forward.w);
-    if p.hits_ground {
-        return light + ground_after(sun_at_ground(tables.volume, p), transmittance_of(p));
+    // Once for both: processors that draw in software go through all branches.
+    let through = transmittance_of(p);
+    if GROUND && p.hits_ground {
+        return light + surface_seen(p, d, through);
     }
-    let disc = star(d);
-    if disc > 0.0 {
-        return light + rgb_of(tables, disc * transmittance_of(p));
-    }
-    return light;
+    return light + rgb_of(tables, star(d) * through);
 }
 
 // O'Neil 2005, the paper's: 1 - exp(-x).

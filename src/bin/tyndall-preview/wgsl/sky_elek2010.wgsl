@@ -51,3 +51,8 @@ fn scattered_here(p: Place, g: f32) -> vec3f {
 fn ground_after(mu_s: f32, through: vec4f) -> vec3f {
     return elek2010_ground(tables, depth, irradiance, filtering, mu_s, through);
 }
+
+// Light of the sky along a ray, of which `kept` is left at the four wavelengths.
+fn sky_after(p: Place, g: f32, kept: vec4f) -> vec3f {
+    return scattered(p, g) * max(rgb_of(tables, kept) / rgb_of(tables, vec4f(1.0)), vec3f(0.0));
+}

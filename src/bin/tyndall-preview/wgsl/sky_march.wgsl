@@ -91,3 +91,8 @@ fn ground_after(mu_s: f32, through: vec4f) -> vec3f {
     let direct = sun_through_air(0.0, mu_s) * max(mu_s, 0.0);
     return rgb_of(tables, through * tables.ground_albedo / 3.14159265 * direct);
 }
+
+// Light of the sky along a ray, of which `kept` is left at the four wavelengths.
+fn sky_after(p: Place, g: f32, kept: vec4f) -> vec3f {
+    return scattered(p, g) * max(rgb_of(tables, kept) / rgb_of(tables, vec4f(1.0)), vec3f(0.0));
+}
