@@ -27,6 +27,8 @@ pub struct Case {
     pub planet: Planet,
     /// For our layouts.
     pub settings: Settings,
+    /// It is the settings that are awkward: nothing to older methods.
+    pub ours_alone: bool,
     /// Takes long.
     pub heavy: bool,
 }
@@ -70,7 +72,7 @@ fn grey(scattering: f64, absorption: f64) -> Optics {
 pub fn cases() -> Result<Vec<Case>> {
     let mut out = Vec::new();
     let mut planet = |name, planet: Result<Planet>| -> Result<()> {
-        out.push(Case { name, planet: planet?, settings: small(), heavy: false });
+        out.push(Case { name, planet: planet?, settings: small(), ours_alone: false, heavy: false });
         Ok(())
     };
     planet("earth-paper", earth(|_| {}))?;
@@ -93,11 +95,17 @@ pub fn cases() -> Result<Vec<Case>> {
     planet("star a million times as bright", earth(|p| p.star.irradiance = p.star.irradiance.scaled(1e6)))?;
     let dense = earth(|p| p.constituents.iter_mut().for_each(|c| c.density_factor *= 100.0))?;
     let thick = [("100 times denser", dense), ("venus", preset::load("venus", &[])?)];
-    out.extend(thick.map(|(name, planet)| Case { name, planet, settings: small(), heavy: true }));
+    out.extend(thick.map(|(name, planet)| Case {
+        name,
+        planet,
+        settings: small(),
+        ours_alone: false,
+        heavy: true,
+    }));
     let mut setting = |name, change: &dyn Fn(&mut Settings)| -> Result<()> {
         let mut settings = small();
         change(&mut settings);
-        out.push(Case { name, planet: earth(|_| {})?, settings, heavy: false });
+        out.push(Case { name, planet: earth(|_| {})?, settings, ours_alone: true, heavy: false });
         Ok(())
     };
     setting("1 wavelength", &|s| s.wavelengths_nm = grid(1))?;
@@ -173,8 +181,9 @@ const DAY: f64 = 0.17;
 /// Radiance over irradiance, 1/sr, below which a view is dark.
 const DARK: f64 = 1e-11;
 
-/// All methods on a case; `ours` leaves out the older ones.
+/// All methods on a case; `ours` leaves out the older ones, as does a case that is none to them.
 pub fn run(case: &Case, ours: bool) -> Vec<Outcome> {
+    let ours = ours || case.ours_alone;
     let views = awkward_views(&case.planet);
     let truth = truth(&case.planet, &views);
     let methods = methods(&case.settings);
@@ -261,7 +270,7 @@ pub fn markdown(outcomes: &[(&'static str, Vec<Outcome>)]) -> String {
     let mut out =
         format!("| case | {} |\n|---|{}\n", families(&|f| short(f).into()), "---|".repeat(Family::ALL.len()));
     for (name, list) in outcomes {
-        let cell = |f: Family| list.iter().find(|o| o.family == f).map_or(String::new(), told);
+        let cell = |f: Family| list.iter().find(|o| o.family == f).map_or("–".into(), told);
         out.push_str(&format!("| {name} | {} |\n", families(&cell)));
     }
     out

@@ -72,16 +72,16 @@ pub fn run(args: &Args) -> Result<()> {
     let Some(preset) = &args.preset else { return stability(args) };
     let planet = preset::load(preset, &args.set)?;
     let csv = args.out.join(format!("{}.csv", planet.name));
-    let (rows, checks) = if args.redraw {
+    let (mut rows, checks) = if args.redraw {
         (read_csv(&csv)?, Vec::new())
     } else {
         let chart = measured(args, &planet)?;
-        let mut rows = rows(&chart);
-        mark(&mut rows);
-        write(&args.out, &format!("{}.csv", planet.name), &to_csv(&rows)?)?;
+        let rows = rows(&chart);
         write(&args.out, &format!("{}-checks.csv", planet.name), checks_csv(&chart).as_bytes())?;
         (rows, chart.checks)
     };
+    mark(&mut rows);
+    write(&args.out, &format!("{}.csv", planet.name), &to_csv(&rows)?)?;
     let (svg, png) = pictures(&rows, Measure(args.error, args.statistic))?;
     write(&args.out, &format!("{}.svg", planet.name), svg.as_bytes())?;
     write(&args.out, &format!("{}.png", planet.name), &png)?;
