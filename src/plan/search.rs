@@ -270,7 +270,7 @@ pub fn front(tried: &[Tried]) -> Vec<Tried> {
     };
     let mut out: Vec<Tried> =
         tried.iter().filter(|t| !tried.iter().any(|other| beats(other, t))).cloned().collect();
-    out.sort_by(|a, b| (a.cost.bytes, a.cost.fetches).cmp(&(b.cost.bytes, b.cost.fetches)));
+    out.sort_by_key(|a| (a.cost.bytes, a.cost.fetches));
     out.dedup();
     out
 }

@@ -67,9 +67,9 @@ impl TableUniform {
     }
 
     fn wgsl(&self) -> String {
-        let rows =
-            [self.size, self.radii, self.bends, self.sun, self.scale, self.offset, self.floor, self.log];
-        format!("Table({})", vectors(&rows))
+        let axes = [self.size, self.radii, self.bends, self.sun, self.window];
+        let decoding = [self.scale, self.offset, self.floor, self.log];
+        format!("Table({}, {})", vectors(&axes), vectors(&decoding))
     }
 
     fn set_decoding(&mut self, table: &Table) {
