@@ -58,7 +58,7 @@ struct Candidate {
 
 /// How many times the tolerance nine in ten of the views beyond the promised share keep within, or else within what the
 /// whole tables do there: a promise about 95 % is not one to spoil the rest.
-const TAIL: f64 = 4.0;
+pub const TAIL: f64 = 4.0;
 /// Least strain that a saving is divided by: what costs less is as good as free.
 const FREE: f64 = 2e-3;
 
@@ -258,7 +258,7 @@ impl Omission {
 }
 
 /// The share that has nine in ten of the views beyond another one.
-fn beyond(share: f64) -> f64 {
+pub fn beyond(share: f64) -> f64 {
     1.0 - 0.1 * (1.0 - share)
 }
 
@@ -270,7 +270,7 @@ pub fn front(tried: &[Tried]) -> Vec<Tried> {
     };
     let mut out: Vec<Tried> =
         tried.iter().filter(|t| !tried.iter().any(|other| beats(other, t))).cloned().collect();
-    out.sort_by_key(|a| (a.cost.bytes, a.cost.fetches));
+    out.sort_by_key(|t| (t.cost.bytes, t.cost.fetches));
     out.dedup();
     out
 }

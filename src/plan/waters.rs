@@ -1,7 +1,7 @@
 //! Waters of a scene: sizes of their tables and orders of scattering, measured as those of the sky are.
 
 use super::judge::Errors;
-use super::search::Omission;
+use super::search::{Omission, TAIL, beyond};
 use crate::bake::palette::Palette;
 use crate::bake::water::{SIZE, Split, Trial, Under, bytes};
 use crate::error::Result;
@@ -150,26 +150,31 @@ pub fn plan(
         let axis = (0..3).filter(|&a| !refused[a]).max_by_key(|&a| (size[a], 3 - a)).expect("one is left");
         let mut next = size;
         next[axis] = (size[axis] * 5).div_ceil(8).max(2);
-        let after = if next == size { f64::INFINITY } else { bench.errors(next, orders, &[0])?[0].at(share) };
+        if next == size {
+            refused[axis] = true;
+            continue;
+        }
+        let errors = bench.errors(next, orders, &[0])?.remove(0);
+        let after = errors.at(share);
+        let worst_views = after <= most && errors.at(beyond(share)) > TAIL * most;
+        let left_out = after <= most && !worst_views;
         let omission = Omission {
             what: format!("waters: {} texels", AXES[axis]),
-            left_out: after <= most,
+            left_out,
             sizes: Some([size[axis], next[axis]]),
             saves_bytes: cost(size) as i64 - cost(next) as i64,
             saves_fetches: 0,
             error: [error, after],
-            worst_views: false,
+            worst_views,
         };
-        if after <= most {
+        if left_out {
             talk(&format!("{}: error {}", omission.what, scene.tolerance.text(after)));
             (size, error) = (next, after);
             history.push(size);
         } else {
             refused[axis] = true;
         }
-        if after.is_finite() {
-            add(&mut omissions, omission);
-        }
+        add(&mut omissions, omission);
     }
     // The second set confirms, as for the sky.
     while history.len() > 1 {

@@ -51,11 +51,8 @@ impl Scope {
         let altitude = between(self.altitudes, u[0]);
         let mu_s = sine(between(self.suns, u[1]));
         let r = ground + altitude;
-        let mu = if r > top {
-            self.seen_from_outside(u[2], r, [ground, top])
-        } else {
-            self.inside(u[2], u[3], r, ground)
-        };
+        let mu =
+            if r > top { self.outside(u[2], r, [ground, top]) } else { self.inside(u[2], u[3], r, ground) };
         Point { altitude, mu, mu_s, azimuth_deg: between(self.azimuths, u[4]) }
     }
 
@@ -74,7 +71,7 @@ impl Scope {
     }
 
     /// Cosine of a view from outside that meets the shell (or, of the sky alone, passes the planet).
-    fn seen_from_outside(&self, u: f64, r: f64, [ground, top]: [f64; 2]) -> f64 {
+    fn outside(&self, u: f64, r: f64, [ground, top]: [f64; 2]) -> f64 {
         // Even in the square of the distance at which the ray passes the centre; just inside the shell's edge, where a
         // ray has some length.
         let square = |elevation: f64| 1.0 - sine(elevation) * sine(elevation);

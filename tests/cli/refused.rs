@@ -49,7 +49,10 @@ fn arguments() {
         ("--size 4x8x6xq", &["`q` is not a number"]),
         ("--size 4x7x6x3", &["--size 4x7x6x3", "even"]),
         ("--size 1x8x6x3", &["at least 2"]),
-        ("--size compat=4x8x6x3", &["compat is not one of elek2010, compact, compact-single or water"]),
+        (
+            "--size compat=4x8x6x3",
+            &["compat is not one of elek2010, compact, compact-single, compact-transmittance or water"],
+        ),
         ("--size 99999x99999x99999x99999", &["more than"]),
         ("--orders 0", &["'0'", "from 1 to 10000"]),
         ("--orders some", &["'some'", "`auto` or a number"]),

@@ -3,7 +3,6 @@
 
 use bytemuck::{Pod, Zeroable};
 use tyndall::export::manifest::{EncodingKind, Manifest, Table};
-use tyndall::table::{HALVES, WINDOW};
 
 /// As many groups of single scattering as `shell.wgsl` has room for.
 pub const MOST_GROUPS: usize = 6;
@@ -58,7 +57,7 @@ impl TableUniform {
         let power = |name: &str| number(name, 1.0);
         out.bends = [number("altitude_bend", 0.0), power("view_power"), power("horizon_power"), kind];
         let middle = constant("shift").or(constant("centre")).unwrap_or(0.0) as f32;
-        let halves = f32::from(u8::from(constant(HALVES) == Some(1.0)));
+        let halves = f32::from(u8::from(constant("halves") == Some(1.0)));
         out.sun = [middle, number("width", 1.0), halves, 0.0];
         let [[altitude, rise], [sun, climb]] = ["altitude", "sun"].map(|axis| window(table, axis));
         out.window = [altitude, rise, sun, climb];
@@ -115,7 +114,7 @@ fn vectors(rows: &[[f32; 4]]) -> String {
 fn window(table: &Table, axis: &str) -> [f32; 2] {
     let axis = table.axes.iter().find(|a| a.name == axis);
     let end = |name: &str| axis.and_then(|a| a.constants.get(name)).copied();
-    let (Some(low), Some(high)) = (end(WINDOW[0]), end(WINDOW[1])) else { return [0.0, 1.0] };
+    let (Some(low), Some(high)) = (end("window_low"), end("window_high")) else { return [0.0, 1.0] };
     [low as f32, if high > low { (1.0 / (high - low)) as f32 } else { 0.0 }]
 }
 
