@@ -25,7 +25,8 @@ impl Point {
     }
 }
 
-const COLUMNS: [&str; 4] = ["altitude_m", "mu_view", "mu_sun", "azimuth_deg"];
+/// Columns of a point in a CSV file.
+pub const COLUMNS: [&str; 4] = ["altitude_m", "mu_view", "mu_sun", "azimuth_deg"];
 
 /// Reads points from a CSV file. Errors name the file, line, column and value.
 pub fn read_points(path: &Path) -> Result<Vec<Point>> {

@@ -18,6 +18,7 @@ pub mod skies;
 mod spectral;
 pub mod tables;
 pub mod three_atmosphere;
+mod vectors;
 pub mod water;
 
 pub use pipeline::{Product, bake};

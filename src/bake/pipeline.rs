@@ -6,7 +6,8 @@ use super::settings::{Layout, Settings, Solver};
 use super::tables::Baked;
 use super::water::WaterTables;
 use super::{
-    compact, describe, elek2010, extinction, pictures, report, skies, spectral, three_atmosphere, water,
+    compact, describe, elek2010, extinction, pictures, report, skies, spectral, three_atmosphere, vectors,
+    water,
 };
 use crate::error::{Error, Result};
 use crate::export::manifest::Manifest;
@@ -51,7 +52,8 @@ pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -
     if let (true, Some(light)) = (settings.spectral, &solved.paper_light) {
         files.extra.extend(spectral::files(&solved.paper, light, planet, settings)?);
     }
-    if solved.full_light.is_some() && sample.iter().any(|s| !s.transfers.is_empty()) {
+    let compact = settings.layouts.contains(&Layout::Compact);
+    if compact && sample.iter().any(|s| !s.transfers.is_empty()) {
         files.extra.push(skies::file(&sample, &settings.wavelengths_nm)?);
     }
     let mut manifest = describe::manifest(planet, settings, &palette, &solved.full, &files);
@@ -69,6 +71,11 @@ pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -
     stage("report");
     let quality = solved.quality(&palette, &filled, &skies, &files);
     let mut warnings = solved.warnings(&quality);
+
+    let points = vectors::points(&solved.full, &settings.window);
+    files
+        .extra
+        .extend(skies.all().into_iter().map(|(layout, sky)| vectors::file(layout.name(), sky, &points)));
 
     stage("picture");
     let (picture, errors) =
@@ -330,9 +337,18 @@ impl Skies {
         })
     }
 
+    /// Skies of the layouts that were baked, the most exact first.
+    fn all(&self) -> Vec<(Layout, &Sky)> {
+        let compact = self.compact.iter().map(|sky| (Layout::Compact, sky));
+        let paper = self.paper.iter().map(|sky| (Layout::Elek2010, sky));
+        compact
+            .chain(paper)
+            .chain(self.three_atmosphere.iter().map(|sky| (Layout::ThreeAtmosphere, sky)))
+            .collect()
+    }
+
     fn best(&self) -> &Sky {
-        let all = [&self.compact, &self.paper, &self.three_atmosphere];
-        all.into_iter().flatten().next().expect("a layout was baked")
+        self.all().first().expect("a layout was baked").1
     }
 
     fn named<'a>(&'a self, waters: &'a [Water]) -> Vec<(&'a str, &'a WaterSky)> {

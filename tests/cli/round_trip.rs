@@ -21,6 +21,47 @@ fn both_layouts_answer_from_their_files() {
     assert!((green / mean - 1.0).abs() < 0.2, "{green} for {mean}");
 }
 
+/// The golden vectors beside a layout's tables are what `sample` answers from the files of the bake, at views by day
+/// and night, from the ground and from space.
+#[test]
+fn golden_vectors_are_what_sample_answers() {
+    for (layout, channels) in [("compact", 4), ("elek2010", 3)] {
+        let file = earth().join(layout).join("vectors.csv");
+        let text = fs::read_to_string(&file).unwrap();
+        let rows: Vec<Vec<f64>> =
+            text.lines().skip(1).map(|l| l.split(',').map(|v| v.parse().unwrap()).collect()).collect();
+        assert!(rows.len() == 60 && rows.iter().any(|r| r[0] > 1e5) && rows.iter().any(|r| r[2] < 0.0));
+        for (component, at) in [("scattering", 4), ("total", 4 + channels)] {
+            let words = ["--layout", layout, "--component", component];
+            let done = ran(command()
+                .arg("sample")
+                .arg(earth())
+                .arg("--points")
+                .arg(&file)
+                .args(words)
+                .output()
+                .unwrap());
+            let answers: Vec<f64> = match layout {
+                // A row a wavelength, the radiance in its sixth column.
+                "compact" => lines(&done).map(|l| l[5]).collect(),
+                _ => lines(&done).flat_map(|l| l[4..7].to_vec()).collect(),
+            };
+            let wanted = rows.iter().flat_map(|r| &r[at..at + channels]);
+            assert_eq!(answers.len(), rows.len() * channels);
+            assert!(
+                answers.iter().zip(wanted).all(|(a, w)| (a - w).abs() <= 1e-7 * w.abs()),
+                "{layout} {component}"
+            );
+            assert!(answers.iter().filter(|a| **a > 0.0).count() > 100);
+        }
+    }
+}
+
+/// Rows of a CSV on standard output, without its header; what is empty is 0.
+fn lines(done: &Ran) -> impl Iterator<Item = Vec<f64>> + '_ {
+    done.out.lines().skip(1).map(|l| l.split(',').map(|v| v.parse().unwrap_or(0.0)).collect())
+}
+
 /// Light is that of the air and that of the ground, and nothing else.
 #[test]
 fn components_add_up() {
