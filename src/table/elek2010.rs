@@ -9,10 +9,15 @@
 //! few digits of altitude left. Every difference below is written as a product or quotient, so that
 //! horizon and distances keep their digits.
 
+mod axes;
+mod part;
+
 use super::array::{Texel, texel};
 use super::bends::Bends;
 use super::sun_curve::SunCurve;
-use super::window::{Span, Views, Window};
+use super::window::{Span, Views};
+
+pub use axes::{AxisFormula, HALVES, WINDOW};
 
 /// The exponent of the sun axis over its whole length: 2.8 cos δ + 0.8 at cos δ = 1. A longer axis stretches
 /// the paper's nodes evenly; with 2.8 kept, the last step below the zenith would widen to half the day.
@@ -42,22 +47,6 @@ pub struct Elek2010 {
     altitudes: [f64; 2],
     suns: [f64; 2],
     views: Views,
-}
-
-/// Names of the constants that say which part of an axis a table holds: the coordinates of its ends, and, where it is 1,
-/// that the view axis has its second half alone.
-pub const WINDOW: [&str; 2] = ["window_low", "window_high"];
-pub const HALVES: &str = "halves";
-
-/// One axis in words, for a manifest: the coordinate 0..1 from the physical quantity, the inverse, and the
-/// constants that both use.
-#[derive(Clone, Debug, PartialEq)]
-pub struct AxisFormula {
-    pub name: &'static str,
-    pub size: usize,
-    pub coordinate: &'static str,
-    pub inverse: &'static str,
-    pub constants: Vec<(&'static str, f64)>,
 }
 
 impl Elek2010 {
@@ -94,70 +83,6 @@ impl Elek2010 {
             suns: [mu_s_min, 1.0],
             views: Views::All,
         })
-    }
-
-    /// A mapping of part of a shell, with a sun axis and bent axes of its own. Here the axes of altitude, sun and azimuth
-    /// may have one texel, and the view axis, where it holds the sky alone, any number from 2. None where a size, the
-    /// shell or the window is out of range.
-    pub fn windowed(
-        [ground_radius, top_radius]: [f64; 2],
-        size: [usize; 4],
-        curve: SunCurve,
-        bends: Bends,
-        window: &Window,
-    ) -> Option<Self> {
-        let mut out = Elek2010::whole(ground_radius, top_radius, size)?;
-        out.altitudes = window.altitudes_in(out.height);
-        if let Some(suns) = window.suns_in(ground_radius, top_radius) {
-            out.suns = suns.map(|mu_s| mu_s.clamp(out.mu_s_min, 1.0));
-        }
-        let curve = curve.with_texel_at_horizon(out.suns, size[2]);
-        let out = out.with_curves(curve, bends);
-        let altitude = out.altitudes.map(|a| out.altitude_coordinate(a));
-        let sun = out.suns.map(|mu_s| out.sun_coordinate(mu_s).unwrap_or(0.0));
-        // The ends of whole axes are 0 and 1 whatever rounding says.
-        let ends = |window: Option<[f64; 2]>, [low, high]: [f64; 2]| match window {
-            None => Some(Span::WHOLE),
-            Some(_) => Span::new(low.clamp(0.0, 1.0), high.clamp(0.0, 1.0)),
-        };
-        let spans = [ends(window.altitudes, altitude)?, ends(window.suns, sun)?];
-        out.with_spans(spans, window.views)
-    }
-
-    /// The same mapping for parts of the altitude and sun axes, in coordinates, and of the view axis; conditions as for
-    /// [`Self::windowed`].
-    fn with_spans(self, spans: [Span; 2], views: Views) -> Option<Self> {
-        let [altitudes, rays, suns, azimuths] = self.size;
-        let halves = if views == Views::All { 2 } else { 1 };
-        if altitudes == 0 || suns == 0 || azimuths == 0 || rays < 2 || !rays.is_multiple_of(halves) {
-            return None;
-        }
-        let altitude = |x: f64| if x == 1.0 { self.height } else { self.altitude_at(x) };
-        let sun = |x: f64| if x == 1.0 { 1.0 } else { self.mu_s_at(x) };
-        Some(Elek2010 {
-            altitudes: [spans[0].low, spans[0].high].map(altitude),
-            suns: [spans[1].low, spans[1].high].map(sun),
-            spans,
-            views,
-            ..self
-        })
-    }
-
-    /// The mapping of a table of stated parts; conditions as for [`Self::windowed`].
-    pub fn of_spans(
-        [ground_radius, top_radius]: [f64; 2],
-        size: [usize; 4],
-        curve: SunCurve,
-        bends: Bends,
-        spans: [Span; 2],
-        views: Views,
-    ) -> Option<Self> {
-        Elek2010::whole(ground_radius, top_radius, size)?.with_curves(curve, bends).with_spans(spans, views)
-    }
-
-    /// The same shell and curves for a table of other size that holds all of the axes.
-    pub fn unwindowed(&self, size: [usize; 4]) -> Option<Self> {
-        Elek2010 { size, ..self.clone() }.with_spans([Span::WHOLE; 2], Views::All)
     }
 
     /// The same mapping with another sun axis and bent altitude and view axes.
@@ -442,74 +367,5 @@ impl Elek2010 {
         }
         let (index, fraction) = texel(self.view_coordinate(altitude, mu, hits_ground), half);
         (if hits_ground { index } else { half + index }, fraction)
-    }
-
-    /// The axes for a manifest. Texel i of n has the coordinate i / (n − 1); for the view axis that holds
-    /// within each half of n / 2 texels. Of an axis of which the table holds a part, the constants `window_low` and
-    /// `window_high` are the coordinates of its ends.
-    pub fn axes(&self) -> [AxisFormula; 4] {
-        let mut axes = self.whole_axes();
-        for (axis, span) in [(0, self.spans[0]), (2, self.spans[1])] {
-            if span != Span::WHOLE {
-                axes[axis].constants.extend([(WINDOW[0], span.low), (WINDOW[1], span.high)]);
-            }
-        }
-        if self.views == Views::Sky {
-            axes[1].constants.push((HALVES, 1.0));
-        }
-        axes
-    }
-
-    fn whole_axes(&self) -> [AxisFormula; 4] {
-        let z2 = self.horizon_distance(self.height);
-        let radii =
-            vec![("r_ground", self.ground_radius), ("r_top", self.ground_radius + self.height), ("Z2", z2)];
-        [
-            AxisFormula {
-                name: "altitude",
-                size: self.size[0],
-                coordinate: "U = (1 + altitude_bend) u / (1 + altitude_bend u), u = Z1 / Z2, Z1 = sqrt(r^2 - \
-                    r_ground^2)",
-                inverse: "u = U / (1 + altitude_bend (1 - U)); r = sqrt(r_ground^2 + (u Z2)^2)",
-                constants: [radii.clone(), vec![("altitude_bend", self.bends.altitude_bend)]].concat(),
-            },
-            AxisFormula {
-                name: "view",
-                size: self.size[1],
-                coordinate: "V = 1 - (1 - t^(1 / view_power))^(1 / horizon_power), t = (d - d_min) / (d_max - d_min). First \
-                    half of the texels, rays that hit the ground: d = -r mu - sqrt(r^2 mu^2 - Z1^2), d_min = r - \
-                    r_ground, d_max = Z1, horizon_power = 1. Second half, rays that do not: d = -r mu + sqrt(r^2 \
-                    mu^2 - Z1^2 + Z2^2), d_min = r_top - r, d_max = Z1 + Z2. Never filter across the halves",
-                inverse: "t = (1 - (1 - V)^horizon_power)^view_power, d = d_min + t (d_max - d_min). First half: \
-                    horizon_power = 1, mu = -(Z1^2 + d^2) / (2 r d). Second half: mu = (Z2^2 - Z1^2 - d^2) / (2 r d)",
-                constants: [
-                    radii,
-                    vec![("view_power", self.bends.view_power), ("horizon_power", self.bends.horizon_power)],
-                ]
-                .concat(),
-            },
-            self.sun_axis(),
-            AxisFormula {
-                name: "azimuth",
-                size: self.size[3],
-                coordinate: "R = (1 + cos(phi)) / 2",
-                inverse: "cos(phi) = 2 R - 1",
-                constants: Vec::new(),
-            },
-        ]
-    }
-
-    fn sun_axis(&self) -> AxisFormula {
-        let low = ("mu_s_min", self.mu_s_min);
-        let (coordinate, inverse, constants) = match self.curve.words() {
-            Some((coordinate, inverse, [a, b])) => (coordinate, inverse, vec![a, b, low]),
-            None => (
-                "W = (1 - exp(-a (mu_s - mu_s_min))) / (1 - exp(-3.6)), a = 3.6 / (1 - mu_s_min); the table is \
-                    0 for mu_s < mu_s_min",
-                "mu_s = mu_s_min - ln(1 - W (1 - exp(-3.6))) / a",
-                vec![("a", self.sun_steepness), low],
-            ),
-        };
-        AxisFormula { name: "sun", size: self.size[2], coordinate, inverse, constants }
     }
 }
