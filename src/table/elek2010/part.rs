@@ -36,7 +36,7 @@ impl Elek2010 {
 
     /// The same mapping for parts of the altitude and sun axes, in coordinates, and of the view axis; conditions as for
     /// [`Self::windowed`].
-    fn with_spans(self, spans: [Span; 2], views: Views) -> Option<Self> {
+    pub(super) fn with_spans(self, spans: [Span; 2], views: Views) -> Option<Self> {
         let [altitudes, rays, suns, azimuths] = self.size;
         let halves = if views == Views::All { 2 } else { 1 };
         if altitudes == 0 || suns == 0 || azimuths == 0 || rays < 2 || !rays.is_multiple_of(halves) {
