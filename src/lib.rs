@@ -9,7 +9,8 @@
 //!
 //! Who may know whom: `spectrum`, `medium` and `table` know nobody above them; `transport` knows no preset,
 //! file or colour; `reference` shares the medium with `transport` and no line of its integration; `bake`
-//! joins them; `export` sees finished tables only; `commands` sees all.
+//! joins them; `export` sees finished tables only; `methods` are other ways to a sky (and our own through `bake`), of
+//! which `chart` knows no more than their trait; `commands` sees all.
 //!
 //! Conventions. SI units and f64 outside the transport loops, nanometres for wavelengths only. `mu`, `mu_s`
 //! and `nu` are cosines of the view zenith, sun zenith and view–sun angles; directions point away from the

@@ -94,12 +94,44 @@ impl Measured {
         for (scene, answer) in lit {
             let rgb = answer.map(|v| v.unwrap_or(f64::NAN));
             let xyz = multiply(&space.to_xyz(), rgb);
-            not_finite += usize::from(rgb.iter().any(|v| !v.is_finite()));
+            let finite = rgb.iter().all(|v| v.is_finite());
+            not_finite += usize::from(!finite);
             negative += usize::from(xyz[1] < 0.0);
-            delta_e.push(delta_e_2000_scaled(scene.xyz, xyz));
+            // A colour that is no number is as far off as can be; the formula's own maxima would swallow it.
+            delta_e.push(if finite { delta_e_2000_scaled(scene.xyz, xyz) } else { f64::INFINITY });
             radiance.push(colour_error(rgb, multiply(&space.from_xyz(), scene.xyz)));
         }
         let (delta_e, radiance) = (Distribution::of(delta_e), Distribution::of(radiance));
         Some(Errors { delta_e, radiance, not_finite, negative })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One view answered rightly and one by no number: the worst error is infinite in both measures, and one view is
+    /// counted as not finite.
+    #[test]
+    fn no_number_is_as_far_off_as_can_be() {
+        let planet = crate::preset::load("earth-blog", &[]).unwrap();
+        let mut truth = Truth::solve(&planet, 1).unwrap();
+        truth.scenes.truncate(1);
+        truth.scenes.push(truth.scenes[0].clone());
+        let rgb = multiply(&ColourSpace::Srgb.from_xyz(), truth.scenes[0].xyz);
+        let measured = Measured {
+            family: Family::Compact,
+            setting: String::new(),
+            failure: None,
+            preparation: 0.0,
+            bytes: 0,
+            fetches: 0.0,
+            nanoseconds: 0.0,
+            answers: vec![rgb.map(Some), [None; 3]],
+        };
+        let errors = measured.errors(&truth, 0).unwrap();
+        assert!(errors.delta_e.max.is_infinite() && errors.radiance.max.is_infinite());
+        assert_eq!((errors.delta_e.count, errors.not_finite), (2, 1));
+        assert!(errors.delta_e.median.is_infinite() || errors.delta_e.median < 1e-6);
     }
 }
