@@ -9,7 +9,7 @@ pub mod inputs;
 mod literal;
 pub mod memory;
 pub mod palette;
-mod pictures;
+pub(crate) mod pictures;
 mod pipeline;
 pub mod recolour;
 pub mod report;

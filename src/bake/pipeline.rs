@@ -84,7 +84,7 @@ pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -
         warnings.push(format!("preview.png: {errors} pixels that no display can show (in magenta)"));
     }
     let about = "skies at several sun heights and the planet from space";
-    files.extra.push(("preview.png".into(), about.into(), picture));
+    files.extra.push((pictures::FILE.into(), about.into(), picture));
 
     manifest.files = files.others();
     manifest.quality = Value::Object(quality);

@@ -58,14 +58,16 @@ pub fn recolour(source: &Source, wanted: &Wanted) -> Result<(Manifest, Vec<u8>)>
     new.settings = settings(old, wanted);
     new.quality = Value::Object(quality(old, &palette));
     new.warnings = planet.warnings.clone();
-    new.files.retain(|f| f.file == skies::FILE);
+    // The light at the four wavelengths stays what it was, and so do its golden vectors.
+    let own = format!("{}/", compact::LAYOUT);
+    new.files.retain(|f| f.file.starts_with(&own));
     let sky = Sky::new(source.folder, &new, compact::LAYOUT, source.tables)?;
     let (picture, errors) = pictures::preview(&sky, &planet, &super::settings::window(&old.settings), &[])?;
     if errors > 0 {
         new.warnings.push(format!("preview.png: {errors} pixels that no display can show (in magenta)"));
     }
     new.files.push(OtherFile {
-        file: "preview.png".into(),
+        file: pictures::FILE.into(),
         blake3: blake3::hash(&picture).to_hex().to_string(),
         about: "skies at several sun heights and the planet from space".into(),
     });

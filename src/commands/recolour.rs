@@ -3,7 +3,7 @@
 use super::bake::space;
 use super::text::print;
 use crate::bake::recolour::{Source, Wanted, recolour};
-use crate::bake::{compact, skies};
+use crate::bake::{compact, pictures::FILE as PICTURE, skies};
 use crate::error::{Error, Result};
 use crate::export::manifest::{MANIFEST, Manifest};
 use crate::export::staging::Staging;
@@ -70,11 +70,12 @@ pub fn run(args: &Args) -> Result<()> {
         return Err(Error::Argument(reason));
     }
     let staging = Staging::begin(&target)?;
-    for (file, _) in new.tables.iter().flat_map(|t| t.files()) {
+    let tables = new.tables.iter().flat_map(|t| t.files().map(|f| f.0));
+    let others = new.files.iter().map(|f| &f.file).filter(|file| *file != PICTURE);
+    for file in tables.chain(others) {
         staging.write(file, &checked(&folder, &manifest, file)?)?;
     }
-    staging.write(skies::FILE, &skies)?;
-    staging.write("preview.png", &picture)?;
+    staging.write(PICTURE, &picture)?;
     staging.write(MANIFEST, new.to_json()?.as_bytes())?;
     staging.commit()?;
     let error = &new.quality["colour"]["four_wavelengths_delta_e_2000"];

@@ -130,7 +130,11 @@ fn tables_can_be_left_out() {
     let less = ["--fold", "air", "--without", "scatterers"];
     let less = bake("earth", &dir.path().join("less"), &[&layout[..], &less].concat());
     let names = |bake: &Path| -> Vec<String> {
-        files(&bake.join("compact")).keys().filter(|n| n.starts_with('s')).cloned().collect()
+        files(&bake.join("compact"))
+            .keys()
+            .filter(|n| n.starts_with('s') && *n != "skies.exr")
+            .cloned()
+            .collect()
     };
     assert_eq!(names(&whole), ["scatterers.exr", "single_aerosol.exr", "single_air.exr"]);
     assert_eq!(names(&less), ["single_aerosol.exr"]);

@@ -148,6 +148,6 @@ mod tests {
         let inner = text.strip_prefix("vec4f(").unwrap().strip_suffix(')').unwrap();
         let back: Vec<f32> = inner.split(", ").map(|v| v.parse().unwrap()).collect();
         assert_eq!(back, [row[0], row[1], row[2], f32::MAX], "{text}");
-        assert!(TablesUniform::default().wgsl().matches("vec4f(").count() == 6 * 8 + 6 + 6 + 1 + 3 + 1);
+        assert!(TablesUniform::default().wgsl().matches("vec4f(").count() == 6 * 9 + 6 + 6 + 1 + 3 + 1);
     }
 }
