@@ -114,9 +114,6 @@ impl Settings {
         };
         let mut out = json!({
             "layouts": self.layouts.iter().map(|l| l.name()).collect::<Vec<_>>(),
-            "elek2010_size": self.elek2010_size,
-            "compact_single_size": self.compact.sizes.single,
-            "compact_multiple_size": self.compact.sizes.multiple,
             "orders": orders,
             "solver": solver,
             "white": white(&self.rgb),
@@ -132,10 +129,18 @@ impl Settings {
             "underwater": self.waters.underwater,
             "shipped_preset": self.shipped_preset,
         });
-        // What leaves something out stands there only where something is left out.
+        // Sizes of layouts that are not baked decide nothing; what leaves something out stands there only where
+        // something is left out.
         let design = &self.compact;
         let window = &self.window;
         let mut add = |key: &str, value: Value| out[key] = value;
+        if self.layouts.contains(&Layout::Elek2010) {
+            add("elek2010_size", json!(self.elek2010_size));
+        }
+        if self.layouts.contains(&Layout::Compact) {
+            add("compact_single_size", json!(design.sizes.single));
+            add("compact_multiple_size", json!(design.sizes.multiple));
+        }
         if design.sizes.depth != Sizes::default().depth {
             add("compact_transmittance_size", json!(design.sizes.depth));
         }

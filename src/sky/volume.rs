@@ -218,8 +218,9 @@ pub fn outside(point: &crate::points::Point, mapping: &Elek2010) -> Option<(&'st
     let [low, high] = mapping.suns();
     if suns != Span::WHOLE && !(low - ROUNDED..=high + ROUNDED).contains(&place.mu_s) {
         let [from, to] = [low, high].map(|mu| libm::asin(mu.clamp(-1.0, 1.0)).to_degrees());
+        let entered = if place.altitude == point.altitude { "" } else { " where the ray enters the air" };
         let reason = format!(
-            "these tables hold suns from {low:.4} to {high:.4} ({from:.2} to {to:.2} degrees of elevation)"
+            "these tables hold suns from {low:.4} to {high:.4} ({from:.2} to {to:.2} degrees of elevation){entered}"
         );
         return Some(("mu_sun", point.mu_s, reason));
     }
