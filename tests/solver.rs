@@ -8,6 +8,7 @@ mod constituents;
 mod solver {
     mod bits;
     mod closed_forms;
+    mod edges;
     mod energy;
     mod literal;
     mod monte_carlo;

@@ -6,14 +6,16 @@
 //!   I = (1 − e^−τ) (Σ_g p_g(ν) S̄_g + S̄_multiple),   1 − e^−τ = −expm1(−τ).
 //! Constituents may be folded into S̄_multiple, and τ may be that of the whole ray: less to store and to look up.
 
+mod edges;
 mod fill;
+mod layer;
 
 use super::extinction::{Held, Matter, channels, phase, table};
 use super::palette::Palette;
 use super::tables::{Baked, axes_of, axis, file_order};
 use crate::export::manifest::Encoding;
 use crate::medium::Medium;
-use crate::table::{Bends, Elek2010, SunCurve, Window};
+use crate::table::{Bends, Elek2010, Layer, SunCurve, Window};
 use crate::transport::fill::Wanted;
 use crate::transport::solve::Solution;
 use fill::{Over, fill};
@@ -39,9 +41,27 @@ const MULTIPLE_SUN: SunCurve = SunCurve::HalfAngle { centre: 0.728, width: 0.13 
 /// The paper's view axis spends few texels near the zenith, where light varies with azimuth, and few close over the
 /// horizon, where, from a height, the rays leave the haze. Haze also wants more altitudes near the ground than the
 /// paper has. Light scattered more often varies less with either.
-const SINGLE_BENDS: Bends = Bends { altitude_bend: 1.5, view_power: 1.5, horizon_power: 2.4 };
-const MULTIPLE_BENDS: Bends = Bends { altitude_bend: 1.5, view_power: 1.5, horizon_power: 1.5 };
-const DEPTH_BENDS: Bends = Bends { altitude_bend: 1.0, view_power: 1.5, horizon_power: 1.5 };
+const SINGLE_BENDS: Bends = Bends {
+    altitude_bend: 1.5,
+    altitude_power: 1.0,
+    view_power: 1.5,
+    horizon_power: 2.4,
+    layer: Layer::NONE,
+};
+const MULTIPLE_BENDS: Bends = Bends {
+    altitude_bend: 1.5,
+    altitude_power: 1.0,
+    view_power: 1.5,
+    horizon_power: 1.5,
+    layer: Layer::NONE,
+};
+const DEPTH_BENDS: Bends = Bends {
+    altitude_bend: 1.0,
+    altitude_power: 1.0,
+    view_power: 1.5,
+    horizon_power: 1.5,
+    layer: Layer::NONE,
+};
 
 /// A kind of table over altitude and view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,6 +80,7 @@ pub fn mapping(medium: &Medium, kind: Kind, size: [usize; 4], window: &Window) -
         Kind::Multiple => (MULTIPLE_SUN, MULTIPLE_BENDS),
         Kind::Depth => (MULTIPLE_SUN, DEPTH_BENDS),
     };
+    let bends = layer::bent(bends, medium);
     let window = if kind == Kind::Depth { window.of_depth() } else { *window };
     Elek2010::windowed(radii, size, sun, bends, &window)
 }

@@ -293,8 +293,10 @@ fn coarse_tables(quality: &Map<String, Value>) -> Vec<String> {
     let warning = |(layout, path): (&str, &[&str])| {
         error(path).map(|e| {
             let percent = if e < 100.0 { format!("{:.0} %", 100.0 * e) } else { "any measure".into() };
+            let besides = if layout == "elek2010" { ", and layout compact errs less" } else { "" };
             format!(
-                "layout {layout}: one in twenty views by day is off by more than {percent}; --size takes larger tables"
+                "layout {layout}: one in twenty views by day is off by more than {percent}; --size takes larger \
+                 tables{besides}"
             )
         })
     };

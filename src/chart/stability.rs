@@ -174,6 +174,8 @@ pub struct Outcome {
     pub negative: usize,
     /// Relative RGB on lit views by day.
     pub error: Distribution,
+    /// What the method says of itself.
+    pub warnings: Vec<String>,
 }
 
 /// Sun's zenith cosine from which it is day.
@@ -200,15 +202,29 @@ fn outcome(method: &dyn Method, planet: &Planet, views: &[Point], truth: &[[f64;
         not_finite: 0,
         negative: 0,
         error: Distribution::default(),
+        warnings: Vec::new(),
     };
     match method.prepare(planet) {
         Err(error) => out.refused = Some(error.to_string()),
-        Ok(prepared) => out.look(prepared.sky.as_ref(), views, truth),
+        Ok(prepared) => {
+            out.look(prepared.sky.as_ref(), views, truth);
+            out.warnings = prepared.warnings;
+        }
     }
     out
 }
 
 impl Outcome {
+    /// Whether the bake itself says that its tables of this layout miss their own day, or that its colours are none.
+    pub fn is_warned(&self) -> bool {
+        let layout = match self.family {
+            Family::Elek2010 => "layout elek2010:",
+            Family::Compact => "layout compact:",
+            _ => return false,
+        };
+        self.warnings.iter().any(|w| w.starts_with(layout) || w.contains("colours need three"))
+    }
+
     fn look(&mut self, sky: &dyn PreparedSky, views: &[Point], truth: &[[f64; 3]]) {
         let luminance = ColourSpace::Srgb.to_xyz()[1];
         let answers: Vec<[f64; 3]> = views.par_iter().map(|p| sky.radiance(p)).collect();
@@ -299,6 +315,9 @@ fn told(o: &Outcome) -> String {
         if count > 0 {
             out.push_str(&format!(", **{what} in {} %**", percent(count as f64 / o.views as f64)));
         }
+    }
+    if o.is_warned() {
+        out.push_str(", warned of");
     }
     out
 }

@@ -321,7 +321,10 @@ pub fn planned(plan: &Plan, out: &Path, quiet: bool, json: bool) -> Result<()> {
     let need = estimate(&planet, &settings);
     let result = make(&out.join(&planet.name), &settings, &Progress::new(quiet), &planet, need);
     let outcomes = vec![Outcome { name: planet.name, result }];
-    summary::tell(&outcomes, json, false)?;
+    // One JSON document is one answer: the plan's.
+    if !json {
+        summary::tell(&outcomes, false, false)?;
+    }
     summary::failure(outcomes)
 }
 

@@ -54,8 +54,9 @@ impl Method for BakedTables {
         let settings = Settings { layouts: vec![self.layout], ..self.settings.clone() };
         let product = bake(planet, &settings, &mut |stage| watch.stage(stage))?;
         let cpu = watch.own();
+        let warnings = product.manifest.warnings.clone();
         let tables = Tables::open(product, self.layout.name(), self.storage)?;
-        Ok(Prepared { sky: Box::new(tables), cpu })
+        Ok(Prepared { sky: Box::new(tables), cpu, warnings })
     }
 }
 

@@ -87,6 +87,8 @@ pub struct Prepared {
     pub sky: Box<dyn PreparedSky>,
     /// Processor time, all threads.
     pub cpu: Duration,
+    /// What the method itself leaves in doubt.
+    pub warnings: Vec<String>,
 }
 
 impl Prepared {
@@ -94,7 +96,7 @@ impl Prepared {
     fn timed<S: PreparedSky + 'static>(prepare: impl FnOnce() -> S) -> Prepared {
         let start = crate::clock::cpu_time();
         let sky = Box::new(prepare());
-        Prepared { sky, cpu: crate::clock::cpu_time().saturating_sub(start) }
+        Prepared { sky, cpu: crate::clock::cpu_time().saturating_sub(start), warnings: Vec::new() }
     }
 }
 

@@ -95,13 +95,22 @@ fn check_table(table: &Table, atlas: &Atlas) -> Result<(), String> {
             check_shell(ground, top)
                 .map_err(|reason| format!("axes.{}: r_ground, r_top: {reason}", axis.name))?;
         }
-        for name in ["view_power", "horizon_power", "width"] {
+        for name in ["view_power", "horizon_power", "altitude_power", "width"] {
             if let Some(v) = constant(name).filter(|v| !(1e-3..=1e3).contains(v)) {
                 return Err(format!("axes.{}.{name} = {v}: must be between 0.001 and 1000", axis.name));
             }
         }
         if let Some(v) = constant("altitude_bend").filter(|v| !(-0.99..=1e3).contains(v)) {
             return Err(format!("axes.{}.altitude_bend = {v}: must be between -0.99 and 1000", axis.name));
+        }
+        if let Some(v) = constant("layer_share").filter(|v| !(0.0..=0.99).contains(v)) {
+            return Err(format!("axes.{}.layer_share = {v}: must be between 0 and 0.99", axis.name));
+        }
+        if let Some(v) = constant("layer_altitude").filter(|v| !(0.0..=1e9).contains(v)) {
+            return Err(format!("axes.{}.layer_altitude = {v}: must be between 0 and 1e9", axis.name));
+        }
+        if let Some(v) = constant("layer_width").filter(|v| !(1.0..=1e9).contains(v)) {
+            return Err(format!("axes.{}.layer_width = {v}: must be between 1 and 1e9", axis.name));
         }
         if let Some(v) = constant("shift").filter(|v| !(-1.0..=1.0).contains(v)) {
             return Err(format!("axes.{}.shift = {v}: must be between -1 and 1", axis.name));

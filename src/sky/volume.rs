@@ -2,7 +2,7 @@
 
 use crate::export::Atlas;
 use crate::export::manifest::{Encoding, Table};
-use crate::table::{Bends, Elek2010, HALVES, Span, SunCurve, Texel, Views, WINDOW, texel};
+use crate::table::{Bends, Elek2010, HALVES, Layer, Span, SunCurve, Texel, Views, WINDOW, texel};
 
 /// Stored samples of up to four channels, x fastest, and how each channel is decoded.
 pub(super) struct Texels {
@@ -81,8 +81,10 @@ fn mapping(table: &Table, size: [usize; 4]) -> Result<Elek2010, String> {
     };
     let bends = Bends {
         altitude_bend: constant(0, "altitude_bend")?,
+        altitude_power: constant(0, "altitude_power").unwrap_or(1.0),
         view_power: constant(1, "view_power")?,
         horizon_power: constant(1, "horizon_power")?,
+        layer: layer(|name| constant(0, name).ok()),
     };
     let span = |axis: Option<usize>| -> Result<Span, String> {
         let end = |name: &str| axis.and_then(|k| constant(k, name).ok());
@@ -93,6 +95,14 @@ fn mapping(table: &Table, size: [usize; 4]) -> Result<Elek2010, String> {
     let views = if constant(1, HALVES).is_ok_and(|n| n == 1.0) { Views::Sky } else { Views::All };
     Elek2010::of_spans(radii, size, curve, bends, [span(Some(0))?, span(sun)?], views)
         .ok_or_else(|| format!("{}: sizes {size:?} or radii are out of range", table.name))
+}
+
+/// The layer of an altitude axis with these constants.
+fn layer(constant: impl Fn(&str) -> Option<f64>) -> Layer {
+    match [constant("layer_share"), constant("layer_altitude"), constant("layer_width")] {
+        [Some(share), Some(altitude), Some(width)] => Layer { share, altitude, width },
+        _ => Layer::NONE,
+    }
 }
 
 /// A table over altitude, view, sun and azimuth.

@@ -1,11 +1,16 @@
 //! How the texels of a table's altitude and view axes are spread over the paper's coordinates.
 
+use super::layer::Layer;
+
 /// Bends of the axes of Elek & Kmoch 2010 §4.1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bends {
     /// Above 0, the altitude axis is finer near the ground by the factor 1 + bend, and coarser near the top by
     /// the same.
     pub altitude_bend: f64,
+    /// 1: the paper's, in which the lowest altitudes are spread by the square root of their height, as the horizon
+    /// recedes. 2: by their height, where the air is too thick for the horizon to be seen.
+    pub altitude_power: f64,
     /// Above 1, the view axis is finer near zenith and nadir.
     pub view_power: f64,
     /// Above 1, rays that do not hit the ground are finer near the horizon. Seen from a height, rays that pass
@@ -13,21 +18,30 @@ pub struct Bends {
     /// altitude is 14 km of 1800 seen from the top of Earth's air. Rays that do hit the ground need no bend: there
     /// the length goes as the square root of the angle below the horizon.
     pub horizon_power: f64,
+    /// Where the altitude axis is finer besides.
+    pub layer: Layer,
 }
 
 impl Bends {
     /// The paper's axes.
-    pub const PAPER: Bends = Bends { altitude_bend: 0.0, view_power: 1.0, horizon_power: 1.0 };
+    pub const PAPER: Bends = Bends {
+        altitude_bend: 0.0,
+        altitude_power: 1.0,
+        view_power: 1.0,
+        horizon_power: 1.0,
+        layer: Layer::NONE,
+    };
 
     /// Coordinate of the paper's U.
     #[inline]
     pub(super) fn altitude_coordinate(&self, u: f64) -> f64 {
+        let u = power(u, self.altitude_power);
         (1.0 + self.altitude_bend) * u / (1.0 + self.altitude_bend * u)
     }
 
     /// The paper's U at a coordinate.
     pub(super) fn altitude(&self, x: f64) -> f64 {
-        x / (1.0 + self.altitude_bend * (1.0 - x))
+        power(x / (1.0 + self.altitude_bend * (1.0 - x)), 1.0 / self.altitude_power)
     }
 
     /// Coordinate in a half of the view axis of the paper's V, 0 nadir or zenith, 1 the horizon.
@@ -61,13 +75,21 @@ mod tests {
     use super::super::{Elek2010, SunCurve};
     use super::*;
 
-    const BENT: Bends = Bends { altitude_bend: 1.5, view_power: 1.4, horizon_power: 2.5 };
+    const BENT: Bends = Bends {
+        altitude_bend: 1.5,
+        altitude_power: 1.0,
+        view_power: 1.4,
+        horizon_power: 2.5,
+        layer: Layer::NONE,
+    };
+
+    const CLOUD: Layer = Layer { share: 0.5, altitude: 120e3, width: 9e3 };
 
     /// Texel centres have the coordinates i / (n − 1), ends included, on a shell a third as thick as its planet,
-    /// by the paper's axes and by bent ones.
+    /// by the paper's axes, by bent ones and by those that are finer in a layer.
     #[test]
     fn coordinates_and_texels_are_inverse() {
-        for bends in [Bends::PAPER, BENT] {
+        for bends in [Bends::PAPER, BENT, Bends { layer: CLOUD, ..BENT }] {
             let map =
                 Elek2010::new(600e3, 800e3, [13, 24, 5, 9]).unwrap().with_curves(SunCurve::Paper, bends);
             for i in 0..13 {
@@ -101,5 +123,19 @@ mod tests {
         let (paper, bent) = (place(Bends::PAPER), place(BENT));
         assert!(paper[0] < 0.5 && bent[0] > 2.0, "{paper:?} {bent:?}");
         assert!(paper[1] < 0.35 && bent[1] > 0.5, "{paper:?} {bent:?}");
+    }
+
+    /// Half of a layer's texels lie within its width: of 81 altitudes, half of them the layer's, 20 lie within 9 km of
+    /// 120 km but for those that the ends of the shell cut off, beside the 3 that lie there without it.
+    #[test]
+    fn a_layer_has_its_share_of_the_altitudes() {
+        let within = |layer: Layer| {
+            let bends = Bends { layer, ..BENT };
+            let map =
+                Elek2010::new(600e3, 800e3, [81, 24, 5, 9]).unwrap().with_curves(SunCurve::Paper, bends);
+            (0..81).filter(|&i| (map.altitude(i) - 120e3).abs() < 9e3).count()
+        };
+        let (without, with) = (within(Layer::NONE), within(CLOUD));
+        assert!((2..=5).contains(&without) && (20..=26).contains(&with), "{without} {with}");
     }
 }

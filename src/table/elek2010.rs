@@ -14,6 +14,7 @@ mod part;
 
 use super::array::{Texel, texel};
 use super::bends::Bends;
+use super::layer::Layer;
 use super::sun_curve::SunCurve;
 use super::window::{Span, Views};
 
@@ -146,7 +147,8 @@ impl Elek2010 {
 
     /// U(altitude) in 0..1.
     pub fn altitude_coordinate(&self, altitude: f64) -> f64 {
-        self.bends.altitude_coordinate(self.horizon_distance(altitude) / self.horizon_distance(self.height))
+        let u = self.horizon_distance(altitude) / self.horizon_distance(self.height);
+        self.bends.layer.coordinate(altitude, self.height, self.bends.altitude_coordinate(u))
     }
 
     /// Altitude of texel `i`, m: that of the window's ends, without one 0 and the shell's height, for first and last.
@@ -158,9 +160,31 @@ impl Elek2010 {
         self.altitude_at(self.spans[0].coordinate(i, self.size[0]))
     }
 
+    /// Altitude half-way, in the axis' coordinate, between texel `i` and the next, m.
+    pub fn altitude_between(&self, i: usize) -> f64 {
+        let ends = [i, i + 1].map(|k| self.spans[0].coordinate(k, self.size[0]));
+        self.altitude_at(0.5 * (ends[0] + ends[1]))
+    }
+
     /// Altitude of a coordinate, m.
     fn altitude_at(&self, x: f64) -> f64 {
-        let share = self.bends.altitude(x);
+        if self.bends.layer == Layer::NONE {
+            return self.altitude_of_share(self.bends.altitude(x));
+        }
+        // The coordinate rises with the altitude; halving a share of 1 sixty times leaves no digit.
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            match self.altitude_coordinate(self.altitude_of_share(middle)) < x {
+                true => low = middle,
+                false => high = middle,
+            }
+        }
+        self.altitude_of_share(0.5 * (low + high))
+    }
+
+    /// Altitude whose U is a share of the top's, m.
+    fn altitude_of_share(&self, share: f64) -> f64 {
         let z1 = self.horizon_distance(self.height) * share;
         let ground = self.ground_radius;
         z1 * z1 / (ground + (ground * ground + z1 * z1).sqrt())

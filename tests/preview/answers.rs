@@ -45,7 +45,7 @@ fn shaders_answer_what_sample_answers() {
     if !gpu() {
         return;
     }
-    for (bake, height) in [(earth(), 66e3), (mars(), 100e3)] {
+    for (bake, height) in [(earth(), 66e3), (mars(), 100e3), (thick(), 65e3)] {
         let views = views(1500, height);
         for layout in ["compact", "elek2010"] {
             let wanted = sample(bake, layout, &views);

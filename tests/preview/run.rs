@@ -34,12 +34,19 @@ pub fn preview(arguments: &[&str]) -> Ran {
 
 /// Tables coarse enough for a bake of a second, each axis of another size so that none can stand for another.
 fn bake(preset: &str, orders: &str, waters: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("preview-{orders}-{waters}"));
+    bake_of(preset, orders, waters, &[])
+}
+
+/// The same of a preset with other values.
+fn bake_of(preset: &str, orders: &str, waters: &str, changes: &[&str]) -> PathBuf {
+    let changed = if changes.is_empty() { "" } else { "-changed" };
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("preview-{orders}-{waters}{changed}"));
     let line = "--quiet --wavelengths 5 --size elek2010=12x32x16x5 --size compact=9x20x18x5 \
                 --size compact-single=10x24x20x6 --size water=14x18x22 --out";
     let mut arguments = vec!["bake", preset, "--orders", orders, "--waters", waters];
     arguments.extend(line.split_whitespace());
     arguments.push(folder.to_str().unwrap());
+    arguments.extend(changes.iter().flat_map(|change| ["--set", change]));
     let done = tyndall(&arguments);
     assert_eq!(done.code, Some(0), "{}", done.err);
     folder.join(preset)
@@ -61,6 +68,13 @@ pub fn earth_once() -> &'static str {
 pub fn mars() -> &'static str {
     static MARS: OnceLock<PathBuf> = OnceLock::new();
     MARS.get_or_init(|| bake("mars", "3", "none")).to_str().unwrap()
+}
+
+/// Air so thick that the altitude axis is finer in a layer of it.
+pub fn thick() -> &'static str {
+    static THICK: OnceLock<PathBuf> = OnceLock::new();
+    let dense = ["constituents.air.density_factor=60", "constituents.aerosol.density_factor=60"];
+    THICK.get_or_init(|| bake_of("earth-paper", "3", "none", &dense)).to_str().unwrap()
 }
 
 /// `mars` with a clear and a thick water.

@@ -4,7 +4,7 @@ use tyndall::chart::stability::{Case, Outcome, cases, run};
 use tyndall::methods::Family;
 
 /// Largest median and 95th percentile of the relative error of RGB by day, of tables a thirtieth as large as the
-/// baker's own, on views that lie where tables are worst.
+/// baker's own, on views that lie where tables are worst. Beyond them the bake has to warn of the layout.
 fn bounds(case: &str, family: Family) -> (f64, f64) {
     let is_ours = family == Family::Compact;
     match case {
@@ -32,8 +32,10 @@ fn complaints(case: &Case, outcome: &Outcome) -> Vec<String> {
         complain(format!("{} not finite, {} negative", outcome.not_finite, outcome.negative));
     }
     let (median, p95) = bounds(case.name, outcome.family);
-    if !(outcome.error.median <= median && outcome.error.p95 <= p95) {
-        complain(format!("median {:.3}, 95 % {:.3}", outcome.error.median, outcome.error.p95));
+    let bounded = outcome.error.median <= median && outcome.error.p95 <= p95;
+    if !bounded && !outcome.is_warned() {
+        let [median, p95] = [outcome.error.median, outcome.error.p95];
+        complain(format!("median {median:.3}, 95 % {p95:.3}, and the bake does not say so"));
     }
     out
 }
@@ -61,9 +63,8 @@ fn our_layouts_stand_every_case() {
     check(false);
 }
 
-/// The same for air of an optical depth of some tens, which takes half a minute.
+/// The same for air of an optical depth of some tens.
 #[test]
-#[ignore = "half a minute of processor time"]
 fn our_layouts_stand_thick_air() {
     check(true);
 }

@@ -1,5 +1,6 @@
 //! Texels of the scattering tables: light of every ray under every sun, as a mean source.
 
+use super::edges;
 use crate::bake::palette::Palette;
 use crate::lanes::Lanes;
 use crate::table::Elek2010;
@@ -43,26 +44,34 @@ pub fn fill(
             continue;
         }
         let painter = Painter::new(solution, batch, groups).together();
+        let ray = |altitude: f64, view: usize, light: &mut RayLight, out: &mut [[f32; 4]]| {
+            let (mu, hits_ground) = mapping.mu(altitude, view);
+            painter.ray(mapping.radii()[0] + altitude, mu, hits_ground, &pairs, wanted, light);
+            for group in count - folded..count {
+                fold(light, &batch.optics.phase[groups[group][0]], group, mu as f32, &pairs);
+            }
+            let source = if wanted == Wanted::Single { &light.single } else { &light.multiple };
+            let depth = if over == Over::All { light.depth } else { light.scatterers_depth };
+            let inverse = inverse_opacity(depth);
+            for (texel, values) in out.iter_mut().zip(source.chunks_exact(each)) {
+                for &(k, w) in &four {
+                    let sum: f32 = values.iter().map(|v| v[w]).sum();
+                    texel[k] = if each == 1 { sum * inverse[w] } else { sum * inverse[w] / each as f32 };
+                }
+            }
+        };
         texels.par_chunks_mut(count * kept).enumerate().for_each_init(
             RayLight::default,
-            |light, (ray, out)| {
-                let altitude = mapping.inner_altitude(ray / views);
-                let (mu, hits_ground) = mapping.mu(altitude, ray % views);
-                painter.ray(mapping.radii()[0] + altitude, mu, hits_ground, &pairs, wanted, light);
-                for group in count - folded..count {
-                    fold(light, &batch.optics.phase[groups[group][0]], group, mu as f32, &pairs);
-                }
-                let source = if wanted == Wanted::Single { &light.single } else { &light.multiple };
-                let depth = if over == Over::All { light.depth } else { light.scatterers_depth };
-                let inverse = inverse_opacity(depth);
-                for (texel, values) in out.iter_mut().zip(source.chunks_exact(each)) {
-                    for &(k, w) in &four {
-                        let sum: f32 = values.iter().map(|v| v[w]).sum();
-                        texel[k] = if each == 1 { sum * inverse[w] } else { sum * inverse[w] / each as f32 };
-                    }
-                }
+            |light, (n, out)| {
+                ray(mapping.inner_altitude(n / views), n % views, light, out);
             },
         );
+        if wanted == Wanted::Single {
+            let between = |lower: usize, view: usize, out: &mut [[f32; 4]]| {
+                ray(mapping.altitude_between(lower), view, &mut RayLight::default(), out)
+            };
+            edges::bridge(&mut texels, [altitudes, views, count, kept], &four, between);
+        }
     }
     (0..count)
         .map(|g| {

@@ -16,6 +16,7 @@ pub struct TableUniform {
     pub bends: [f32; 4],
     pub sun: [f32; 4],
     pub window: [f32; 4],
+    pub layer: [f32; 4],
     pub scale: [f32; 4],
     pub offset: [f32; 4],
     pub floor: [f32; 4],
@@ -61,12 +62,18 @@ impl TableUniform {
         out.sun = [middle, number("width", 1.0), halves, 0.0];
         let [[altitude, rise], [sun, climb]] = ["altitude", "sun"].map(|axis| window(table, axis));
         out.window = [altitude, rise, sun, climb];
+        out.layer = [
+            number("layer_share", 0.0),
+            number("layer_altitude", 0.0),
+            number("layer_width", 1.0),
+            number("altitude_power", 1.0),
+        ];
         out.set_decoding(table);
         out
     }
 
     fn wgsl(&self) -> String {
-        let axes = [self.size, self.radii, self.bends, self.sun, self.window];
+        let axes = [self.size, self.radii, self.bends, self.sun, self.window, self.layer];
         let decoding = [self.scale, self.offset, self.floor, self.log];
         format!("Table({}, {})", vectors(&axes), vectors(&decoding))
     }
@@ -148,6 +155,6 @@ mod tests {
         let inner = text.strip_prefix("vec4f(").unwrap().strip_suffix(')').unwrap();
         let back: Vec<f32> = inner.split(", ").map(|v| v.parse().unwrap()).collect();
         assert_eq!(back, [row[0], row[1], row[2], f32::MAX], "{text}");
-        assert!(TablesUniform::default().wgsl().matches("vec4f(").count() == 6 * 9 + 6 + 6 + 1 + 3 + 1);
+        assert!(TablesUniform::default().wgsl().matches("vec4f(").count() == 6 * 10 + 6 + 6 + 1 + 3 + 1);
     }
 }

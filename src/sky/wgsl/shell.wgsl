@@ -31,6 +31,9 @@ struct Table {
     // What part of the altitude and of the sun axis the texels hold: the coordinate of its start, and 1 over its extent
     // (0 where it has none), of each.
     window: vec4f,
+    // A layer that the altitude axis of thick air is finer in: its share of the axis, 0 without one, its altitude and
+    // width, m, and altitude_power.
+    layer: vec4f,
     // Decoding, for each channel: value = scale * stored + offset, or, where `log` is 1, 0 for stored <= floor and
     // scale * exp(stored + offset) above it.
     scale: vec4f,
@@ -109,10 +112,23 @@ fn ray_length(t: Table, altitude: f32, mu: f32, ground: bool) -> f32 {
     return select(root - along, to_top / (along + root), along > 0.0);
 }
 
+// Quotient that a layer's part of the altitude axis is even in.
+fn layer_quotient(t: Table, altitude: f32) -> f32 {
+    let v = (altitude - t.layer.y) / t.layer.z;
+    return v / (1.0 + abs(v));
+}
+
 // 0..1 along the altitude axis.
 fn altitude_coordinate(t: Table, altitude: f32) -> f32 {
     let u = horizon_distance(t, altitude) / horizon_distance(t, shell_height(t));
-    return (1.0 + t.bends.x) * u / (1.0 + t.bends.x * u);
+    if t.layer.x == 0.0 {
+        return (1.0 + t.bends.x) * u / (1.0 + t.bends.x * u);
+    }
+    let v = pow(u, t.layer.w);
+    let bent = (1.0 + t.bends.x) * v / (1.0 + t.bends.x * v);
+    let low = layer_quotient(t, 0.0);
+    let share = (layer_quotient(t, altitude) - low) / (layer_quotient(t, shell_height(t)) - low);
+    return mix(bent, share, t.layer.x);
 }
 
 // The paper's V, 0..1 within a half, of a ray of this length.

@@ -41,14 +41,7 @@ impl Elek2010 {
         let radii =
             vec![("r_ground", self.ground_radius), ("r_top", self.ground_radius + self.height), ("Z2", z2)];
         [
-            AxisFormula {
-                name: "altitude",
-                size: self.size[0],
-                coordinate: "U = (1 + altitude_bend) u / (1 + altitude_bend u), u = Z1 / Z2, Z1 = sqrt(r^2 - \
-                    r_ground^2)",
-                inverse: "u = U / (1 + altitude_bend (1 - U)); r = sqrt(r_ground^2 + (u Z2)^2)",
-                constants: [radii.clone(), vec![("altitude_bend", self.bends.altitude_bend)]].concat(),
-            },
+            self.altitude_axis(&radii),
             AxisFormula {
                 name: "view",
                 size: self.size[1],
@@ -73,6 +66,32 @@ impl Elek2010 {
                 constants: Vec::new(),
             },
         ]
+    }
+
+    fn altitude_axis(&self, radii: &[(&'static str, f64)]) -> AxisFormula {
+        let layer = self.bends.layer;
+        let mut constants = radii.to_vec();
+        constants.push(("altitude_bend", self.bends.altitude_bend));
+        let (coordinate, inverse) = if layer.share == 0.0 {
+            (
+                "U = (1 + altitude_bend) u / (1 + altitude_bend u), u = Z1 / Z2, Z1 = sqrt(r^2 - r_ground^2)",
+                "u = U / (1 + altitude_bend (1 - U)); r = sqrt(r_ground^2 + (u Z2)^2)",
+            )
+        } else {
+            constants.extend([
+                ("altitude_power", self.bends.altitude_power),
+                ("layer_share", layer.share),
+                ("layer_altitude", layer.altitude),
+                ("layer_width", layer.width),
+            ]);
+            (
+                "U = (1 - layer_share) X + layer_share (Q(r - r_ground) - Q(0)) / (Q(r_top - r_ground) - Q(0)), \
+                    X = (1 + altitude_bend) u / (1 + altitude_bend u), u = (Z1 / Z2)^altitude_power, Z1 = sqrt(r^2 - \
+                    r_ground^2), Q(z) = v / (1 + |v|), v = (z - layer_altitude) / layer_width",
+                "none in closed form; U rises with r",
+            )
+        };
+        AxisFormula { name: "altitude", size: self.size[0], coordinate, inverse, constants }
     }
 
     fn sun_axis(&self) -> AxisFormula {
