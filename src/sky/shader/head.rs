@@ -36,7 +36,7 @@ pub fn comment(manifest: &Manifest, layout: &str, tables: &[Bound], language: La
     let what = format!(
         "Look-ups in the bake of `{planet}`, layout `{layout}`, with all that they need of bake.json.\n"
     );
-    let parts = [&what, TEXTURES, how, "\n", &listed(tables), CALLS, &called(manifest, layout), FILTERS];
+    let parts = [&what, TEXTURES, how, "\n\n", &listed(tables), CALLS, &called(manifest, layout), FILTERS];
     parts.concat().lines().map(commented).collect()
 }
 
