@@ -101,6 +101,9 @@ impl Files {
     }
 }
 
+/// Path inside a bake, and content.
+pub type Content = (String, Vec<u8>);
+
 /// What the manifest says of a file that is no table: of its path, what it is, and its content.
 pub fn entry((file, about, bytes): &(String, String, Vec<u8>)) -> OtherFile {
     OtherFile { file: file.clone(), blake3: hash(bytes), about: about.clone() }

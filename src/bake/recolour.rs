@@ -1,7 +1,7 @@
 //! A bake of the compact layout under another star, for another observer or in another colour space: its tables hold
 //! ratios of radiance and irradiance, which know neither, so that only numbers of the manifest change.
 
-use super::files::entry;
+use super::files::{Content, entry};
 use super::palette::Palette;
 use super::skies::{self, Skies};
 use super::{compact, describe, pictures, report};
@@ -39,7 +39,7 @@ pub struct Source<'a> {
 ///
 /// # Errors
 /// `File` for a source that is damaged or not of this tool.
-pub fn recolour(source: &Source, wanted: &Wanted) -> Result<(Manifest, Vec<(String, Vec<u8>)>)> {
+pub fn recolour(source: &Source, wanted: &Wanted) -> Result<(Manifest, Vec<Content>)> {
     let refuse = |reason: String| Error::file(source.folder, format!("bake.json: {reason}"));
     let old = source.manifest;
     let mut planet = Planet::from_resolved(&old.preset.resolved).map_err(|e| refuse(e.to_string()))?;
