@@ -90,11 +90,6 @@ impl Files {
 
     /// Entries of the manifest for the files that are no tables.
     pub fn others(&self) -> Vec<OtherFile> {
-        let entry = |(file, about, bytes): &(String, String, Vec<u8>)| OtherFile {
-            file: file.clone(),
-            blake3: hash(bytes),
-            about: about.clone(),
-        };
         self.extra.iter().map(entry).collect()
     }
 
@@ -104,6 +99,14 @@ impl Files {
             self.tables.into_iter().flat_map(|f| [(f.entry.file, f.bytes)].into_iter().chain(f.others));
         tables.chain(self.extra.into_iter().map(|(file, _, bytes)| (file, bytes))).collect()
     }
+}
+
+/// Path inside a bake, and content.
+pub type Content = (String, Vec<u8>);
+
+/// What the manifest says of a file that is no table: of its path, what it is, and its content.
+pub fn entry((file, about, bytes): &(String, String, Vec<u8>)) -> OtherFile {
+    OtherFile { file: file.clone(), blake3: hash(bytes), about: about.clone() }
 }
 
 /// Halves that lost something of their value, counted.

@@ -14,7 +14,7 @@ use crate::export::manifest::Manifest;
 use crate::medium::Medium;
 use crate::preset::{Planet, Water};
 use crate::sky::water::WaterSky;
-use crate::sky::{AerosolPhase, Sky};
+use crate::sky::{AerosolPhase, Sky, shader};
 use crate::spectrum::RANGE;
 use crate::transport::solve::{Orders, Resolution, Solution, worst};
 use serde_json::{Map, Value, json};
@@ -76,6 +76,9 @@ pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -
     files
         .extra
         .extend(skies.all().into_iter().map(|(layout, sky)| vectors::file(layout.name(), sky, &points)));
+    for (layout, _) in skies.all() {
+        files.extra.extend(shader::files(Path::new(IN_MEMORY), &manifest, layout.name())?);
+    }
 
     stage("picture");
     let (picture, errors) =

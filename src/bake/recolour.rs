@@ -1,14 +1,15 @@
 //! A bake of the compact layout under another star, for another observer or in another colour space: its tables hold
 //! ratios of radiance and irradiance, which know neither, so that only numbers of the manifest change.
 
+use super::files::{Content, entry};
 use super::palette::Palette;
 use super::skies::{self, Skies};
 use super::{compact, describe, pictures, report};
 use crate::error::{Error, Result};
 use crate::export::Atlas;
-use crate::export::manifest::{Manifest, OtherFile, Preset, Tool};
+use crate::export::manifest::{Manifest, Preset, Tool};
 use crate::preset::Planet;
-use crate::sky::Sky;
+use crate::sky::{Sky, shader};
 use crate::spectrum::{Beholder, OBSERVER_RANGE, Rgb, Spectrum, planck_law};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -33,12 +34,12 @@ pub struct Source<'a> {
     pub skies: &'a [u8],
 }
 
-/// The manifest of the recoloured bake (its `preview.png` listed last) and that picture. Its tables are the source's.
-/// The matrices are those of a bake, fitted on the same skies, but for the choice of the four wavelengths, which stays.
+/// The manifest of the recoloured bake, and path and content of the files that are not the source's: look-ups, which
+/// hold its matrices, and `preview.png`. The matrices are those of a bake, fitted on the same skies, but for the choice of the four wavelengths, which stays.
 ///
 /// # Errors
 /// `File` for a source that is damaged or not of this tool.
-pub fn recolour(source: &Source, wanted: &Wanted) -> Result<(Manifest, Vec<u8>)> {
+pub fn recolour(source: &Source, wanted: &Wanted) -> Result<(Manifest, Vec<Content>)> {
     let refuse = |reason: String| Error::file(source.folder, format!("bake.json: {reason}"));
     let old = source.manifest;
     let mut planet = Planet::from_resolved(&old.preset.resolved).map_err(|e| refuse(e.to_string()))?;
@@ -58,21 +59,20 @@ pub fn recolour(source: &Source, wanted: &Wanted) -> Result<(Manifest, Vec<u8>)>
     new.settings = settings(old, wanted);
     new.quality = Value::Object(quality(old, &palette));
     new.warnings = planet.warnings.clone();
-    // The light at the four wavelengths stays what it was, and so do its golden vectors.
-    let own = format!("{}/", compact::LAYOUT);
-    new.files.retain(|f| f.file.starts_with(&own));
+    let mut made = shader::files(source.folder, &new, compact::LAYOUT)?;
     let sky = Sky::new(source.folder, &new, compact::LAYOUT, source.tables)?;
     let (picture, errors) = pictures::preview(&sky, &planet, &super::settings::window(&old.settings), &[])?;
     if errors > 0 {
         new.warnings.push(format!("preview.png: {errors} pixels that no display can show (in magenta)"));
     }
-    new.files.push(OtherFile {
-        file: pictures::FILE.into(),
-        blake3: blake3::hash(&picture).to_hex().to_string(),
-        about: "skies at several sun heights and the planet from space".into(),
-    });
+    let about = "skies at several sun heights and the planet from space";
+    made.push((pictures::FILE.into(), about.into(), picture));
+    // The light at the four wavelengths stays what it was, and so do its golden vectors.
+    let own = format!("{}/", compact::LAYOUT);
+    new.files.retain(|f| f.file.starts_with(&own) && made.iter().all(|m| m.0 != f.file));
+    new.files.extend(made.iter().map(entry));
     new.seal()?;
-    Ok((new, picture))
+    Ok((new, made.into_iter().map(|(file, _, bytes)| (file, bytes)).collect()))
 }
 
 /// Irradiance at the planet, π B sin² α, W/(m² nm), as presets have it.

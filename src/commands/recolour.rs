@@ -3,7 +3,7 @@
 use super::bake::space;
 use super::text::print;
 use crate::bake::recolour::{Source, Wanted, recolour};
-use crate::bake::{compact, pictures::FILE as PICTURE, skies};
+use crate::bake::{compact, skies};
 use crate::error::{Error, Result};
 use crate::export::manifest::{MANIFEST, Manifest};
 use crate::export::staging::Staging;
@@ -62,7 +62,7 @@ pub fn run(args: &Args) -> Result<()> {
     let skies = checked(&folder, &manifest, skies::FILE)?;
     let tables = pictures(&folder, &manifest, compact::LAYOUT)?;
     let source = Source { folder: &folder, manifest: &manifest, tables: &tables, skies: &skies };
-    let (new, picture) = recolour(&source, &wanted)?;
+    let (new, made) = recolour(&source, &wanted)?;
     let target = args.out.join(&new.preset.name);
     let same = |a: &std::path::Path| std::fs::canonicalize(a).ok();
     if same(&target).is_some() && same(&target) == same(&folder) {
@@ -71,11 +71,13 @@ pub fn run(args: &Args) -> Result<()> {
     }
     let staging = Staging::begin(&target)?;
     let tables = new.tables.iter().flat_map(|t| t.files().map(|f| f.0));
-    let others = new.files.iter().map(|f| &f.file).filter(|file| *file != PICTURE);
+    let others = new.files.iter().map(|f| &f.file).filter(|file| made.iter().all(|m| m.0 != **file));
     for file in tables.chain(others) {
         staging.write(file, &checked(&folder, &manifest, file)?)?;
     }
-    staging.write(PICTURE, &picture)?;
+    for (file, bytes) in &made {
+        staging.write(file, bytes)?;
+    }
     staging.write(MANIFEST, new.to_json()?.as_bytes())?;
     staging.commit()?;
     let error = &new.quality["colour"]["four_wavelengths_delta_e_2000"];

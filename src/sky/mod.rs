@@ -5,6 +5,7 @@
 mod check;
 mod compact;
 mod elek2010;
+pub mod shader;
 mod three_atmosphere;
 mod volume;
 pub mod water;

@@ -56,6 +56,12 @@ fn another_star_and_space() {
     assert_eq!(found["colour"]["adaptation"], expected["colour"]["adaptation"]);
     if found["four"] == expected["four"] {
         assert_eq!(found, expected);
+        for language in ["wgsl", "glsl", "hlsl"] {
+            let file = format!("compact/lookup.{language}");
+            let [before, found, wanted] =
+                [&one, &other, &baked].map(|bake| std::fs::read_to_string(bake.join(&file)).unwrap());
+            assert!(found == wanted && found != before, "{file}");
+        }
     }
     let told = words(&format!("diff {} {} --json", other.display(), baked.display()));
     let told: Value = serde_json::from_str(&told.out).unwrap();

@@ -57,6 +57,34 @@ fn golden_vectors_are_what_sample_answers() {
     }
 }
 
+/// Look-ups stand beside each layout in three languages, with all tables of the layout to bind, in the order of the
+/// bindings, and functions that can be called; `sound` has held them against the hashes of the manifest.
+#[test]
+fn look_ups_name_the_tables_of_their_layout() {
+    let manifest = manifest(earth());
+    let files: Vec<&str> =
+        manifest["files"].as_array().unwrap().iter().map(|f| f["file"].as_str().unwrap()).collect();
+    for layout in ["compact", "elek2010"] {
+        let tables = manifest["tables"].as_array().unwrap().iter().filter(|t| t["layout"] == layout);
+        let mut tables: Vec<&str> = tables.map(|t| t["file"].as_str().unwrap()).collect();
+        tables.sort_unstable();
+        for (language, call) in
+            [("wgsl", "fn sky_total("), ("glsl", "vec3 sky_total("), ("hlsl", "float3 sky_total(")]
+        {
+            let file = format!("{layout}/lookup.{language}");
+            assert!(files.contains(&file.as_str()), "{file}");
+            let text = fs::read_to_string(earth().join(&file)).unwrap();
+            let head = text.lines().take_while(|l| l.starts_with("//"));
+            let mut bound: Vec<&str> =
+                head.filter_map(|l| l.split(' ').find(|w| w.ends_with(".exr"))).collect();
+            assert!(bound[0].ends_with(if layout == "compact" { "multiple.exr" } else { "scattering.exr" }));
+            bound.sort_unstable();
+            assert_eq!(bound, tables, "{file}");
+            assert!(text.contains(call) && text.lines().all(|l| l.chars().count() <= 140), "{file}");
+        }
+    }
+}
+
 /// Rows of a CSV on standard output, without its header; what is empty is 0.
 fn lines(done: &Ran) -> impl Iterator<Item = Vec<f64>> + '_ {
     done.out.lines().skip(1).map(|l| l.split(',').map(|v| v.parse().unwrap_or(0.0)).collect())

@@ -27,7 +27,7 @@ impl Air {
 }
 
 fn read(bake: &Bake) -> std::result::Result<Air, String> {
-    let groups = bake.uniforms.counts[0] as usize;
+    let groups = bake.constants.counts[0] as usize;
     if groups == 0 || groups > MOST_GROUPS {
         return Err(format!("{groups} groups of phase functions: the march sums 1 to {MOST_GROUPS}"));
     }

@@ -1,12 +1,11 @@
 //! One layout of a bake, read from its files and checked, in the form that textures take.
 
 use crate::sea::Water;
-use crate::uniforms::{MOST_GROUPS, TableUniform, TablesUniform, four, rgb_rows};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use tyndall::export::manifest::{Manifest, Table};
 use tyndall::export::{Atlas, Samples};
-use tyndall::sky::{self, Sky};
+use tyndall::sky::{self, Sky, shader};
 use tyndall::{Error, Result};
 
 /// The layouts that there are shaders for.
@@ -78,7 +77,7 @@ pub struct Bake {
     pub folder: PathBuf,
     pub manifest: Manifest,
     pub layout: Layout,
-    pub uniforms: TablesUniform,
+    pub constants: shader::Constants,
     pub volume: Texels,
     pub single: Texels,
     pub depth: Texels,
@@ -155,37 +154,15 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn bake(&self, sky: Sky) -> Result<Bake> {
-        let constant = |name: &str| self.manifest.constants.get(name).and_then(|v| v.first()).copied();
-        let illuminance = constant("star_illuminance_lx").unwrap_or(1.0);
-        let main = if self.layout == Layout::Compact { "multiple" } else { "scattering" };
-        let mut uniforms = TablesUniform {
-            volume: self.uniform(main)?,
-            depth: self.uniform("transmittance")?,
-            scatterers: self.uniform("scatterers")?,
-            irradiance: self.uniform("irradiance")?,
-            phase: self.uniform("phase")?,
-            rgb: rgb_rows(self.manifest, "rgb_from_four", illuminance),
-            ..Default::default()
-        };
-        if let Some(albedo) = self.manifest.constants.get("ground_albedo_at_four") {
-            uniforms.ground_albedo = four(albedo);
-        }
-        let (single, groups) = self.stacked(&mut uniforms)?;
-        if groups > 0 && (uniforms.phase.log[0] != 1.0 || uniforms.single.log[0] != 1.0) {
-            let reason = "bake.json: tables.phase and tables.single_*: must be stored as logarithms";
-            return Err(Error::file(self.folder, reason));
-        }
-        let has = |name: &str| self.table(name).is_some();
-        let row = constant("elek2010_aerosol_phase_row").unwrap_or(0.0);
-        let row = if has("phase") { row } else { -1.0 };
-        uniforms.counts = four(&[groups as f64, f64::from(u8::from(has("scatterers"))), row, illuminance]);
+        let constants = shader::Constants::new(self.manifest, self.layout.name());
+        let constants = constants.map_err(|reason| Error::file(self.folder, reason))?;
         Ok(Bake {
             folder: self.folder.to_path_buf(),
             manifest: self.manifest.clone(),
             layout: self.layout,
-            uniforms,
-            volume: self.texels(main),
-            single,
+            constants,
+            volume: self.texels(shader::main(self.layout.name())),
+            single: self.stacked(),
             depth: self.texels("transmittance"),
             scatterers: self.texels("scatterers"),
             irradiance: self.texels("irradiance"),
@@ -204,42 +181,16 @@ impl Reader<'_> {
         self.table(name).map_or_else(Texels::none, |(table, atlas)| Texels::new(table, atlas))
     }
 
-    /// Zeros for a table that is not there.
-    fn uniform(&self, name: &str) -> Result<TableUniform> {
-        let constant = |name: &str| {
-            let found = self.manifest.constants.get(name).and_then(|v| v.first()).copied();
-            found.ok_or_else(|| Error::file(self.folder, format!("bake.json: constants.{name} is missing")))
-        };
-        let radii = [constant("ground_radius_m")?, constant("top_radius_m")?];
-        Ok(self.table(name).map_or_else(TableUniform::default, |(table, _)| TableUniform::new(table, radii)))
-    }
-
-    /// The tables of single scattering one behind the other, in the order of the rows of the phase table.
-    fn stacked(&self, uniforms: &mut TablesUniform) -> Result<(Texels, usize)> {
-        let of_layout = self.manifest.tables.iter().filter(|t| t.layout == self.layout.name());
-        let names: Vec<&str> =
-            of_layout.map(|t| t.name.as_str()).filter(|n| n.starts_with("single_")).collect();
-        let refuse = |reason: String| Err(Error::file(self.folder, reason));
-        if names.len() > MOST_GROUPS {
-            let n = names.len();
-            return refuse(format!(
-                "{n} tables of single scattering: the preview draws {MOST_GROUPS} at most"
-            ));
+    /// The tables of single scattering one behind the other, in the order of the rows of the phase table: all are of one
+    /// shape, or there would be no constants.
+    fn stacked(&self) -> Texels {
+        let singles = shader::singles(self.manifest, self.layout.name());
+        let mut all = singles.iter().map(|table| self.texels(&table.name));
+        let Some(mut stack) = all.next() else { return Texels::none() };
+        for texels in all {
+            stack.size[2] += texels.size[2];
+            stack.bits.extend(texels.bits);
         }
-        let mut stack = Texels::none();
-        for (k, name) in names.iter().enumerate() {
-            let (uniform, texels) = (self.uniform(name)?, self.texels(name));
-            uniforms.group_scale[k] = uniform.scale;
-            uniforms.group_offset[k] = uniform.offset;
-            if k == 0 {
-                (uniforms.single, stack) = (uniform, texels);
-            } else if uniforms.single.stacks_with(&uniform) {
-                stack.size[2] += texels.size[2];
-                stack.bits.extend(texels.bits);
-            } else {
-                return refuse(format!("tables.{name}: of another shape than {}", names[0]));
-            }
-        }
-        Ok((stack, names.len()))
+        stack
     }
 }

@@ -35,7 +35,7 @@ pub fn run(gpu: &Gpu, bake: &Bake, options: &Options) -> Result<()> {
         return bench.say_textures();
     }
     let table = bench.timed(Method::Table)?;
-    if bake.uniforms.counts[0] < 0.5 {
+    if bake.constants.counts[0] < 0.5 {
         println!("no march: it needs layout compact");
         return bench.say_textures();
     }

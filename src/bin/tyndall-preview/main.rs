@@ -21,7 +21,6 @@ mod sea;
 mod slicer;
 mod stopwatch;
 mod target;
-mod uniforms;
 mod window;
 
 use bake::Bake;

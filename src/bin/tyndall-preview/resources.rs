@@ -3,16 +3,12 @@
 use crate::air::Air;
 use crate::bake::{Bake, Layout, Texels};
 use crate::gpu::Gpu;
+use tyndall::sky::shader::{COMPACT, ELEK2010, SHELL, SLICES, WATER};
 use tyndall::{Error, Result};
 
-const SHELL: &str = include_str!("../../sky/wgsl/shell.wgsl");
-const COMPACT: &str = include_str!("../../sky/wgsl/compact.wgsl");
-const ELEK2010: &str = include_str!("../../sky/wgsl/elek2010.wgsl");
 const BINDINGS: &str = include_str!("wgsl/bindings.wgsl");
 const SKY_COMPACT: &str = include_str!("wgsl/sky_compact.wgsl");
-const SLICES: &str = include_str!("../../sky/wgsl/slices.wgsl");
 const SKY_MARCH: &str = include_str!("wgsl/sky_march.wgsl");
-const WATER: &str = include_str!("../../sky/wgsl/water.wgsl");
 const SKY_ELEK2010: &str = include_str!("wgsl/sky_elek2010.wgsl");
 
 /// How light is found.
@@ -25,9 +21,14 @@ pub enum Method {
     March { view: u32, sun: u32 },
 }
 
+/// The constants of a bake.
+fn tables(bake: &Bake) -> String {
+    bake.constants.groups_wgsl() + &bake.constants.wgsl()
+}
+
 /// The look-ups of a layout, the files that engines copy, and the preview's bindings of them.
 pub fn look_ups(bake: &Bake, method: Method) -> String {
-    let tables = bake.uniforms.wgsl();
+    let tables = tables(bake);
     let parts = match (bake.layout, method) {
         (_, Method::March { .. }) => vec![SHELL, BINDINGS, &tables, SKY_MARCH],
         (Layout::Compact, _) => vec![SHELL, SLICES, COMPACT, BINDINGS, &tables, SKY_COMPACT],
@@ -43,7 +44,7 @@ pub fn water_look_ups() -> String {
 
 /// The pass that fills a frame's slices.
 pub fn slicing(bake: &Bake) -> String {
-    [SHELL, SLICES, BINDINGS, &bake.uniforms.wgsl(), include_str!("wgsl/slice.wgsl")].join("\n")
+    [SHELL, SLICES, BINDINGS, &tables(bake), include_str!("wgsl/slice.wgsl")].join("\n")
 }
 
 /// Constants that a pipeline of the look-ups takes.
@@ -152,13 +153,13 @@ fn slices(gpu: &Gpu, bake: &Bake) -> Option<wgpu::Texture> {
     if !gpu.device.features().contains(wgpu::Features::FLOAT32_FILTERABLE) {
         return None;
     }
-    let [volume, single] = [bake.uniforms.volume.size, bake.uniforms.single.size];
+    let [volume, single] = [bake.constants.volume.size, bake.constants.single.size];
     Some(gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("slices"),
         size: wgpu::Extent3d {
             width: volume[3].max(single[3]) as u32,
             height: volume[1].max(single[1]) as u32,
-            depth_or_array_layers: 1 + (bake.uniforms.counts[0] as u32).max(1),
+            depth_or_array_layers: 1 + (bake.constants.counts[0] as u32).max(1),
         },
         mip_level_count: 1,
         sample_count: 1,

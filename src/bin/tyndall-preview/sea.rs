@@ -3,9 +3,9 @@
 use crate::bake::{Bake, Texels};
 use crate::gpu::Gpu;
 use crate::resources::{texture, texture_entry, uniform_entry};
-use crate::uniforms::{TableUniform, four, rgb_rows};
 use bytemuck::{Pod, Zeroable};
 use tyndall::export::manifest::Manifest;
+use tyndall::sky::shader::{TableConstants, four, rgb_rows};
 use tyndall::sky::{self, water};
 use tyndall::{Error, Result};
 
@@ -24,7 +24,8 @@ pub const USUAL_DEPTH: f64 = 10.0;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct WaterUniform {
-    tables: [TableUniform; TABLES.len()],
+    /// A `Table` of `shell.wgsl` each.
+    tables: [[[f32; 4]; 10]; TABLES.len()],
     axes: [f32; 4],
     bed: [f32; 4],
     kappa: [f32; 4],
@@ -78,7 +79,7 @@ impl Water {
         let list = |what: &str| bake.manifest.constants.get(&of(what)).map_or([0.0; 4], |v| four(v));
         let illuminance = bake.constant("star_illuminance_lx").unwrap_or(1.0);
         let uniform = WaterUniform {
-            tables: std::array::from_fn(|k| TableUniform::new(found[k].0, [1.0; 2])),
+            tables: std::array::from_fn(|k| TableConstants::new(found[k].0, [1.0; 2]).rows()),
             axes: four(&axes),
             bed: list("seabed_albedo_at_four"),
             kappa: list("kappa_per_m"),

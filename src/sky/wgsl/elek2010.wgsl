@@ -8,6 +8,12 @@ fn elek2010_phase(t: Tables, phase: texture_2d<f32>, filtering: sampler, nu: f32
     return phase_at(t.phase, phase, filtering, nu, t.counts.z);
 }
 
+// Light of a stored sample under sunlight of this transmittance.
+fn elek2010_light(t: Tables, stored: vec4f, sunlight: vec4f, phase: vec4f) -> vec3f {
+    let light: vec4f = decode(t.volume, stored);
+    return light.rgb / t.counts.w + light.a * max(rgb_of(t, sunlight * phase), vec3f(0.0));
+}
+
 // Light that the air scatters into a view, linear RGB (I_F = I_S + I_P e^-t of the paper's section 5), the aerosol's
 // with the phase function `phase`, 1/sr at the four wavelengths.
 fn elek2010_scattering(
@@ -21,15 +27,9 @@ fn elek2010_scattering(
     if !p.inside || !sun_is_up(t.volume, p.mu_s) {
         return vec3f(0.0);
     }
-    let stored = fetch_4d(t.volume, scattering, filtering, volume_texel(t.volume, p), 0.0);
-    let sunlight = sunlight_at(t.depth, depth, filtering, p.altitude, p.mu_s);
+    let stored: vec4f = fetch_4d(t.volume, scattering, filtering, volume_texel(t.volume, p), 0.0);
+    let sunlight: vec4f = sunlight_at(t.depth, depth, filtering, p.altitude, p.mu_s);
     return elek2010_light(t, stored, sunlight, phase);
-}
-
-// Light of a stored sample under sunlight of this transmittance.
-fn elek2010_light(t: Tables, stored: vec4f, sunlight: vec4f, phase: vec4f) -> vec3f {
-    let light = decode(t.volume, stored);
-    return light.rgb / t.counts.w + light.a * max(rgb_of(t, sunlight * phase), vec3f(0.0));
 }
 
 // Light that a Lambertian ground reflects under a sun of zenith cosine `mu_s`, linear RGB, after a ray of
@@ -42,9 +42,9 @@ fn elek2010_ground(
     mu_s: f32,
     through: vec4f,
 ) -> vec3f {
-    let reflected = t.ground_albedo * through;
-    let direct = rgb_of(t, reflected * sunlight_at(t.depth, depth, filtering, 0.0, mu_s)) * max(mu_s, 0.0);
-    let share = max(rgb_of(t, reflected) / rgb_of(t, vec4f(1.0)), vec3f(0.0));
-    let ambient = irradiance_at(t.irradiance, irradiance, filtering, mu_s).rgb / t.counts.w;
+    let reflected: vec4f = t.ground_albedo * through;
+    let direct: vec3f = rgb_of(t, reflected * sunlight_at(t.depth, depth, filtering, 0.0, mu_s)) * max(mu_s, 0.0);
+    let share: vec3f = max(rgb_of(t, reflected) / rgb_of(t, vec4f(1.0)), vec3f(0.0));
+    let ambient: vec3f = irradiance_at(t.irradiance, irradiance, filtering, mu_s).rgb / t.counts.w;
     return (max(direct, vec3f(0.0)) + ambient * share) / 3.14159265;
 }

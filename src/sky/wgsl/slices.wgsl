@@ -33,11 +33,11 @@ fn fetch_sliced(t: Table, slices: texture_2d_array<f32>, filtering: sampler, p: 
 }
 
 // Stored samples of a view of the slices' altitude and sun, of all layers.
-fn fetch_slices(t: Tables, slices: texture_2d_array<f32>, filtering: sampler, p: Place) -> array<vec4f, 7> {
-    var stored = array<vec4f, 7>();
-    stored[0] = fetch_sliced(t.volume, slices, filtering, p, 0);
-    for (var k = 1; k <= i32(t.counts.x); k++) {
-        stored[k] = fetch_sliced(t.single, slices, filtering, p, k);
+fn fetch_slices(t: Tables, slices: texture_2d_array<f32>, filtering: sampler, p: Place) -> Stored {
+    var stored: Stored;
+    stored.volume = fetch_sliced(t.volume, slices, filtering, p, 0);
+    for (var k = 0; k < i32(t.counts.x); k++) {
+        stored.single[k] = fetch_sliced(t.single, slices, filtering, p, k + 1);
     }
     return stored;
 }

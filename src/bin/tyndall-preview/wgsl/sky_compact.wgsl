@@ -17,9 +17,19 @@ fn answer(p: Place) -> vec4f {
     return light;
 }
 
+// Stored samples of a view. The groups' tables, all of one size, are stacked in `single`.
+fn fetched(p: Place) -> Stored {
+    var stored: Stored;
+    stored.volume = fetch_4d(tables.volume, volume, filtering, volume_texel(tables.volume, p), 0.0);
+    let at = volume_texel(tables.single, p);
+    for (var k = 0; k < i32(tables.counts.x); k++) {
+        stored.single[k] = fetch_4d(tables.single, single, filtering, at, f32(k));
+    }
+    return stored;
+}
+
 fn scattered_at_four(p: Place) -> vec4f {
-    let stored = compact_fetch(tables, volume, single, filtering, p);
-    return compact_scattering(tables, stored, depth, scatterers, phase, filtering, p);
+    return compact_scattering(tables, fetched(p), depth, scatterers, phase, filtering, p);
 }
 
 fn scattered(p: Place, g: f32) -> vec3f {

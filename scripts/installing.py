@@ -1,0 +1,41 @@
+"""What scripts need besides Python's packages, brought where the system lets them."""
+
+import json
+import shutil
+import subprocess
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+THREE = "three@0.187.0"
+
+
+def apt(*packages):
+    """None where Debian's packages are installed, else why not."""
+    if not shutil.which("apt-get"):
+        return "no apt-get"
+    sudo = ["sudo", "-n"] if shutil.which("sudo") else []
+    install = [*sudo, "apt-get", "install", "-y", "--no-install-recommends", *packages]
+    done = subprocess.run(install, capture_output=True, text=True)
+    if done.returncode != 0:
+        # The lists of a new machine are old, or not there.
+        subprocess.run([*sudo, "apt-get", "update"], capture_output=True)
+        done = subprocess.run(install, capture_output=True, text=True)
+    return None if done.returncode == 0 else (done.stderr.strip().splitlines() or ["no reason given"])[-1]
+
+
+def program(name, *packages):
+    """None where there is a program, else why its packages cannot be installed."""
+    return None if shutil.which(name) else apt(*packages)
+
+
+def three():
+    """The folder whose node_modules have three.js, which npm fetches the first time, or None with a line that says why."""
+    home = ROOT / ".venv/node"
+    if not (shutil.which("node") and shutil.which("npm")):
+        print("three.js left out: there is no node and npm here")
+        return None
+    found = home / "node_modules/three/package.json"
+    if not (found.exists() and json.loads(found.read_text())["version"] == THREE.split("@")[1]):
+        home.mkdir(parents=True, exist_ok=True)
+        subprocess.run(["npm", "install", "--silent", "--no-save", "--prefix", home, THREE], check=True)
+    return home
