@@ -1,7 +1,7 @@
 //! Points of view as CSV, the form that the oracles share (columns found by name), and answers to them.
 
 use crate::error::{Error, Result};
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::Path;
 
 /// An observer and a view, all angles at the observer, inside or outside the atmosphere.
@@ -28,10 +28,16 @@ impl Point {
 /// Columns of a point in a CSV file.
 pub const COLUMNS: [&str; 4] = ["altitude_m", "mu_view", "mu_sun", "azimuth_deg"];
 
+/// Views of a file at most; in memory, with their answers at four wavelengths, they take a gigabyte.
+pub const MOST_POINTS: usize = 10_000_000;
+/// Bytes of a file of views at most.
+const MOST_BYTES: u64 = 2 << 30;
+
 /// Reads points from a CSV file. Errors name the file, line, column and value.
 pub fn read_points(path: &Path) -> Result<Vec<Point>> {
     let file = std::fs::File::open(path).map_err(|e| Error::reading(path, e))?;
-    parse_points(path, std::io::BufReader::new(file))
+    // A device that never ends would be one endless row.
+    parse_points(path, std::io::BufReader::new(file.take(MOST_BYTES)))
 }
 
 /// [`read_points`] of any stream; `path` is for messages only.
@@ -46,8 +52,11 @@ pub fn parse_points(path: &Path, stream: impl std::io::Read) -> Result<Vec<Point
             .ok_or_else(|| Error::file(path, format!("column {name} is missing (needed: {COLUMNS:?})")))?;
     }
     let mut points = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(|e| unreadable(path, e))?;
+    let mut record = csv::StringRecord::new();
+    while reader.read_record(&mut record).map_err(|e| unreadable(path, e))? {
+        if points.len() == MOST_POINTS {
+            return Err(Error::file(path, format!("more than {MOST_POINTS} views: split it")));
+        }
         let line = record.position().map_or(0, |p| p.line());
         let mut v = [0.0; 4];
         for (k, slot) in v.iter_mut().enumerate() {

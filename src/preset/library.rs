@@ -1,6 +1,7 @@
 //! The presets and spectra that are inside the binary.
 
 use crate::error::{Error, Result};
+use crate::input::{self, MOST_CSV};
 use crate::spectrum::Spectrum;
 use std::path::{Path, PathBuf};
 
@@ -144,7 +145,7 @@ pub fn spectrum(name: &str, quantity: &str, beside: &str) -> Result<Option<Spect
         return parse(&format!("presets/spectra/{name}.csv"), text, quantity).map(Some);
     }
     let Some(path) = spectrum_path(name, beside) else { return Ok(None) };
-    let text = std::fs::read_to_string(&path).map_err(|e| Error::reading(&path, e))?;
+    let text = input::named_text(&path, MOST_CSV)?;
     parse(&path.display().to_string(), &text, quantity).map(Some)
 }
 
@@ -157,7 +158,8 @@ pub fn spectrum_path(name: &str, beside: &str) -> Option<PathBuf> {
     Some(if near.exists() { near } else { Path::new(name).to_path_buf() })
 }
 
-fn parse(file: &str, text: &str, quantity: &str) -> Result<Spectrum> {
+/// A spectrum from the text of such a file; `file` is for messages only.
+pub fn parse(file: &str, text: &str, quantity: &str) -> Result<Spectrum> {
     let has_source = |l: &str| l.strip_prefix("# source:").is_some_and(|s| !s.trim().is_empty());
     if !text.lines().any(has_source) {
         return Err(Error::file(file, "numbers without a source: a line `# source: …` is missing"));
