@@ -4,12 +4,18 @@ use std::fmt::{self, Display, Write};
 use std::path::{Path, PathBuf};
 
 /// A text on one line, whatever is in it: names and values of files that strangers made may hold line breaks, or what
-/// a terminal takes for commands. Control characters are shown as escapes.
+/// a terminal takes for commands. Control characters are shown as escapes, and what is longer than any path is cut.
 pub struct Line<T>(pub T);
+
+/// Characters of a [`Line`] at most.
+const MOST_SHOWN: usize = 4096;
 
 impl<T: Display> Display for Line<T> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        for c in self.0.to_string().chars() {
+        for (n, c) in self.0.to_string().chars().enumerate() {
+            if n == MOST_SHOWN {
+                return f.write_char('…');
+            }
             match c {
                 // Line and paragraph separators, and what turns the direction of writing.
                 '\u{2028}' | '\u{2029}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => {
@@ -95,6 +101,7 @@ mod tests {
     fn one_line() {
         let error = Error::file("a\nb.json", "key `\u{1b}[31m\u{2028}` — größer");
         assert_eq!(error.to_string(), "a\\nb.json: key `\\u{1b}[31m\\u{2028}` — größer");
+        assert_eq!(Error::Argument("n".repeat(1 << 20)).to_string().chars().count(), MOST_SHOWN + 1);
         let error = Error::Argument("--set a\r\n=1\t".into());
         assert_eq!(error.to_string(), "--set a\\r\\n=1\\t");
     }

@@ -36,14 +36,14 @@ const MOST_BYTES: u64 = 2 << 30;
 /// Reads points from a CSV file. Errors name the file, line, column and value.
 pub fn read_points(path: &Path) -> Result<Vec<Point>> {
     let file = std::fs::File::open(path).map_err(|e| Error::reading(path, e))?;
-    // A device that never ends would be one endless row.
     parse_points(path, std::io::BufReader::new(file.take(MOST_BYTES)))
 }
 
 /// [`read_points`] of any stream; `path` is for messages only.
 pub fn parse_points(path: &Path, stream: impl std::io::Read) -> Result<Vec<Point>> {
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(stream);
-    let header = reader.headers().map_err(|e| Error::file(path, e))?.clone();
+    let rows = Rows { stream, length: 0 };
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(rows);
+    let header = reader.headers().map_err(|e| unreadable(path, e))?.clone();
     let mut index = [0; 4];
     for (slot, name) in index.iter_mut().zip(COLUMNS) {
         *slot = header
@@ -67,6 +67,31 @@ pub fn parse_points(path: &Path, stream: impl std::io::Read) -> Result<Vec<Point
     Ok(points)
 }
 
+/// Bytes of a row at most.
+const MOST_ROW: usize = 1 << 16;
+
+/// A stream that fails at a row that does not end, as that of a device of zeros, which would be kept whole.
+struct Rows<R> {
+    stream: R,
+    /// Bytes since the last end of a row.
+    length: usize,
+}
+
+impl<R: Read> Read for Rows<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let count = self.stream.read(buffer)?;
+        self.length = match buffer[..count].iter().rposition(|&b| b == b'\n') {
+            Some(end) => count - end - 1,
+            None => self.length + count,
+        };
+        if self.length > MOST_ROW {
+            let reason = format!("a row of more than {MOST_ROW} bytes");
+            return Err(std::io::Error::new(std::io::ErrorKind::InvalidData, reason));
+        }
+        Ok(count)
+    }
+}
+
 /// A row with too few or too many fields (a decimal comma makes two of one) in our words, the rest in csv's.
 fn unreadable(path: &Path, error: csv::Error) -> Error {
     match error.kind() {
@@ -74,6 +99,7 @@ fn unreadable(path: &Path, error: csv::Error) -> Error {
             path,
             format!("line {}: {len} fields, not {expected_len} as in the header", pos.line()),
         ),
+        csv::ErrorKind::Io(e) => Error::file(path, e),
         _ => Error::file(path, error),
     }
 }

@@ -26,6 +26,7 @@ use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
 use jobs::{Bounds, run_all};
 use progress::{Progress, stages};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use summary::{Done, Outcome};
 
@@ -215,10 +216,11 @@ fn of_preset(args: &Args, settings: &Settings, asked: &str) -> Settings {
 
 /// Two planets of one name would share a folder, and the first bake would be lost in silence.
 fn refuse_shared_folders(asked: &[String], planets: &[Result<Planet>]) -> Result<()> {
-    let name = |k: usize| planets[k].as_ref().ok().map(|p| p.name.as_str());
-    for k in 0..planets.len() {
-        if let Some(j) = (0..k).find(|&j| name(j).is_some() && name(j) == name(k)) {
-            let (one, two, name) = (&asked[j], &asked[k], name(k).unwrap_or_default());
+    let mut seen = BTreeMap::new();
+    for (k, planet) in planets.iter().enumerate() {
+        let Ok(Planet { name, .. }) = planet else { continue };
+        if let Some(j) = seen.insert(name, k) {
+            let (one, two) = (&asked[j], &asked[k]);
             let reason = format!("{one} and {two} are both named {name}: one folder for two bakes");
             return Err(Error::Argument(reason));
         }

@@ -9,9 +9,9 @@ pub const MOST_HEIGHT: f64 = 10.0;
 /// Largest vertical optical depth; a thousand times that of the thickest clouds.
 pub const MOST_DEPTH: f64 = 1e5;
 
-/// Nodes of a density profile at most, more than a sounding has: columns are summed from node to node, and the solver
-/// has a shell for each.
-pub const MOST_NODES: usize = 5000;
+/// Nodes of a density profile at most, far more than shipped planets have: the solver has a shell for each, and with five
+/// thousand a bake of small tables took minutes.
+pub const MOST_NODES: usize = 1000;
 
 /// Radii of ground and top (m) that make a shell of air; the reason where they do not.
 pub fn check_shell(ground: f64, top: f64) -> Result<(), String> {

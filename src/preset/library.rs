@@ -172,8 +172,8 @@ pub fn parse(file: &str, text: &str, quantity: &str) -> Result<Spectrum> {
     }
     let (mut wavelengths, mut values) = (Vec::new(), Vec::new());
     for (number, line) in lines {
-        let row: Vec<f64> = line.split(',').filter_map(|t| t.trim().parse().ok()).collect();
-        let &[wavelength, value] = row.as_slice() else {
+        let row: Option<Vec<f64>> = line.split(',').map(|t| t.trim().parse().ok()).collect();
+        let Some(&[wavelength, value]) = row.as_deref() else {
             return Err(Error::file(file, format!("line {}: `{line}` is not two numbers", number + 1)));
         };
         wavelengths.push(wavelength);
@@ -220,6 +220,7 @@ mod tests {
         assert!(refuse(&good.replace("# source: me 2020", "# source:")).contains("without a source"));
         assert!(refuse(&good.replace("cross_section_m2", "irradiance")).contains("header"));
         assert!(refuse(&good.replace("2e-28", "x")).contains("line 4"));
+        assert!(refuse(&good.replace("2e-28", "x,2e-28")).contains("line 4"));
         assert!(refuse(&good.replace("500", "300")).contains("must rise"));
     }
 }

@@ -50,6 +50,11 @@ fn endless_files() {
     ] {
         refused(words, 2, "bytes, which are the most");
     }
+    for words in
+        [&["sample", bake, "--points", "/dev/zero"][..], &["reference", "earth", "--points", "/dev/zero"]]
+    {
+        refused(words, 2, "a row of more than 65536 bytes");
+    }
     for words in [&["verify", "/dev/zero"][..], &["diff", bake, "/dev/zero"]] {
         refused(words, 2, "not a file but a device");
     }
@@ -158,7 +163,7 @@ fn presets_of_a_million() {
             m["constituents"][0]["profile"] = json!({ "kind": "linear", "source": "me",
                 "altitudes_m": million(), "densities": vec![1; 1_000_000] })
         },
-        "1000000 altitudes: 5000 are the most",
+        "1000000 altitudes: 1000 are the most",
     );
     refused(
         "phase.json",
@@ -170,6 +175,7 @@ fn presets_of_a_million() {
         "are the most",
     );
     refused("name.json", &|m| m["name"] = json!("n".repeat(1 << 20)), "100 letters at most");
+    refused("key.json", &|m| m["k".repeat(8 << 20)] = json!(1), "unknown key; the nearest known one is");
     let deep = dir.path().join("deep.json");
     fs::write(&deep, "[".repeat(1 << 20)).unwrap();
     super::hostile::refused(&["bake", deep.to_str().unwrap()], 2, "recursion limit exceeded");
