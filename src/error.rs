@@ -87,9 +87,21 @@ impl Error {
             // The last two: a NUL in a name, and one that is too long.
             NotFound | PermissionDenied | InvalidData | IsADirectory | NotADirectory | InvalidInput
             | InvalidFilename => Error::file(path, source),
+            _ if leads_round(&source) => Error::file(path, source),
             _ => Error::machine(path, source),
         }
     }
+}
+
+/// Whether links lead from one to the other and never to a file.
+#[cfg(unix)]
+fn leads_round(e: &std::io::Error) -> bool {
+    e.raw_os_error() == Some(rustix::io::Errno::LOOP.raw_os_error())
+}
+
+#[cfg(not(unix))]
+fn leads_round(_: &std::io::Error) -> bool {
+    false
 }
 
 #[cfg(test)]

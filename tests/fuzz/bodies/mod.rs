@@ -10,8 +10,11 @@ mod tables;
 
 use std::path::Path;
 
+/// Takes any bytes.
+pub type Body = fn(&[u8]);
+
 /// Name and function of every kind of input.
-pub const ALL: [(&str, fn(&[u8])); 15] = [
+pub const ALL: [(&str, Body); 15] = [
     ("planet", presets::planet),
     ("water", presets::water),
     ("scene", presets::scene),
