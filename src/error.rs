@@ -1,24 +1,51 @@
 //! The library's one error type: what went wrong, where, and which exit code the command line gives it.
 
+use std::fmt::{self, Display, Write};
 use std::path::{Path, PathBuf};
+
+/// A text on one line, whatever is in it: names and values of files that strangers made may hold line breaks, or what
+/// a terminal takes for commands. Control characters are shown as escapes, and what is longer than any path is cut.
+pub struct Line<T>(pub T);
+
+/// Characters of a [`Line`] at most.
+const MOST_SHOWN: usize = 4096;
+
+impl<T: Display> Display for Line<T> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        for (n, c) in self.0.to_string().chars().enumerate() {
+            if n == MOST_SHOWN {
+                return f.write_char('…');
+            }
+            match c {
+                // Line and paragraph separators, and what turns the direction of writing.
+                '\u{2028}' | '\u{2029}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => {
+                    write!(f, "{}", c.escape_unicode())?
+                }
+                c if c.is_control() => write!(f, "{}", c.escape_debug())?,
+                c => f.write_char(c)?,
+            }
+        }
+        Ok(())
+    }
+}
 
 /// Every failure that a user can meet, as one line.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// A value in an input file: file, key, value, reason.
-    #[error("{file}: {key} = {value}: {reason}")]
+    #[error("{}: {} = {}: {}", Line(.file), Line(.key), Line(.value), Line(.reason))]
     Value { file: String, key: String, value: String, reason: String },
     /// An input file that cannot be used as a whole (missing, malformed, truncated, foreign).
-    #[error("{}: {reason}", file.display())]
+    #[error("{}: {}", Line(.file.display()), Line(.reason))]
     File { file: PathBuf, reason: String },
     /// A wrong argument or combination of arguments.
-    #[error("{0}")]
+    #[error("{}", Line(.0))]
     Argument(String),
     /// A check that the user asked for did not hold.
-    #[error("{0}")]
+    #[error("{}", Line(.0))]
     Check(String),
     /// The machine failed: disk, memory, permissions.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {source}", Line(.path.display()))]
     Machine { path: PathBuf, source: std::io::Error },
     /// A number that must be finite is not: names the table and the place in it.
     #[error("{table}: not a finite number at {place}; nothing was written")]
@@ -57,10 +84,37 @@ impl Error {
     pub fn reading(path: impl AsRef<Path>, source: std::io::Error) -> Self {
         use std::io::ErrorKind::*;
         match source.kind() {
-            NotFound | PermissionDenied | InvalidData | IsADirectory | NotADirectory => {
-                Error::file(path, source)
-            }
+            // The last two: a NUL in a name, and one that is too long.
+            NotFound | PermissionDenied | InvalidData | IsADirectory | NotADirectory | InvalidInput
+            | InvalidFilename => Error::file(path, source),
+            _ if leads_round(&source) => Error::file(path, source),
             _ => Error::machine(path, source),
         }
+    }
+}
+
+/// Whether links lead from one to the other and never to a file.
+#[cfg(unix)]
+fn leads_round(e: &std::io::Error) -> bool {
+    e.raw_os_error() == Some(rustix::io::Errno::LOOP.raw_os_error())
+}
+
+#[cfg(not(unix))]
+fn leads_round(_: &std::io::Error) -> bool {
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A name with a line break and one with a terminal's command for red stay on one line, unlike letters and accents.
+    #[test]
+    fn one_line() {
+        let error = Error::file("a\nb.json", "key `\u{1b}[31m\u{2028}` — größer");
+        assert_eq!(error.to_string(), "a\\nb.json: key `\\u{1b}[31m\\u{2028}` — größer");
+        assert_eq!(Error::Argument("n".repeat(1 << 20)).to_string().chars().count(), MOST_SHOWN + 1);
+        let error = Error::Argument("--set a\r\n=1\t".into());
+        assert_eq!(error.to_string(), "--set a\\r\\n=1\\t");
     }
 }

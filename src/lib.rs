@@ -25,9 +25,11 @@ pub mod clock;
 pub mod commands;
 pub mod error;
 pub mod export;
+pub mod input;
 pub mod isa;
 pub mod lanes;
 pub mod medium;
+pub mod memory;
 pub mod methods;
 pub mod plan;
 pub mod points;
@@ -39,4 +41,4 @@ pub mod spectrum;
 pub mod table;
 pub mod transport;
 
-pub use error::{Error, Result};
+pub use error::{Error, Line, Result};

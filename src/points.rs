@@ -1,7 +1,7 @@
 //! Points of view as CSV, the form that the oracles share (columns found by name), and answers to them.
 
 use crate::error::{Error, Result};
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::Path;
 
 /// An observer and a view, all angles at the observer, inside or outside the atmosphere.
@@ -28,16 +28,22 @@ impl Point {
 /// Columns of a point in a CSV file.
 pub const COLUMNS: [&str; 4] = ["altitude_m", "mu_view", "mu_sun", "azimuth_deg"];
 
+/// Views of a file at most; in memory, with their answers at four wavelengths, they take a gigabyte.
+pub const MOST_POINTS: usize = 10_000_000;
+/// Bytes of a file of views at most.
+const MOST_BYTES: u64 = 2 << 30;
+
 /// Reads points from a CSV file. Errors name the file, line, column and value.
 pub fn read_points(path: &Path) -> Result<Vec<Point>> {
     let file = std::fs::File::open(path).map_err(|e| Error::reading(path, e))?;
-    parse_points(path, std::io::BufReader::new(file))
+    parse_points(path, std::io::BufReader::new(file.take(MOST_BYTES)))
 }
 
 /// [`read_points`] of any stream; `path` is for messages only.
 pub fn parse_points(path: &Path, stream: impl std::io::Read) -> Result<Vec<Point>> {
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(stream);
-    let header = reader.headers().map_err(|e| Error::file(path, e))?.clone();
+    let rows = Rows { stream, length: 0 };
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(rows);
+    let header = reader.headers().map_err(|e| unreadable(path, e))?.clone();
     let mut index = [0; 4];
     for (slot, name) in index.iter_mut().zip(COLUMNS) {
         *slot = header
@@ -46,8 +52,11 @@ pub fn parse_points(path: &Path, stream: impl std::io::Read) -> Result<Vec<Point
             .ok_or_else(|| Error::file(path, format!("column {name} is missing (needed: {COLUMNS:?})")))?;
     }
     let mut points = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(|e| unreadable(path, e))?;
+    let mut record = csv::StringRecord::new();
+    while reader.read_record(&mut record).map_err(|e| unreadable(path, e))? {
+        if points.len() == MOST_POINTS {
+            return Err(Error::file(path, format!("more than {MOST_POINTS} views: split it")));
+        }
         let line = record.position().map_or(0, |p| p.line());
         let mut v = [0.0; 4];
         for (k, slot) in v.iter_mut().enumerate() {
@@ -58,6 +67,31 @@ pub fn parse_points(path: &Path, stream: impl std::io::Read) -> Result<Vec<Point
     Ok(points)
 }
 
+/// Bytes of a row at most.
+const MOST_ROW: usize = 1 << 16;
+
+/// A stream that fails at a row that does not end, as that of a device of zeros, which would be kept whole.
+struct Rows<R> {
+    stream: R,
+    /// Bytes since the last end of a row.
+    length: usize,
+}
+
+impl<R: Read> Read for Rows<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let count = self.stream.read(buffer)?;
+        self.length = match buffer[..count].iter().rposition(|&b| b == b'\n') {
+            Some(end) => count - end - 1,
+            None => self.length + count,
+        };
+        if self.length > MOST_ROW {
+            let reason = format!("a row of more than {MOST_ROW} bytes");
+            return Err(std::io::Error::new(std::io::ErrorKind::InvalidData, reason));
+        }
+        Ok(count)
+    }
+}
+
 /// A row with too few or too many fields (a decimal comma makes two of one) in our words, the rest in csv's.
 fn unreadable(path: &Path, error: csv::Error) -> Error {
     match error.kind() {
@@ -65,6 +99,7 @@ fn unreadable(path: &Path, error: csv::Error) -> Error {
             path,
             format!("line {}: {len} fields, not {expected_len} as in the header", pos.line()),
         ),
+        csv::ErrorKind::Io(e) => Error::file(path, e),
         _ => Error::file(path, error),
     }
 }

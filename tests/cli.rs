@@ -12,6 +12,7 @@ mod cli {
     mod disk;
     mod farm;
     mod help;
+    mod hostile;
     mod many;
     mod media;
     mod options;

@@ -62,7 +62,9 @@ impl Solve {
         let (state_levels, field_levels) = (levels.coarse as f64, (levels.coarse * levels.refinement) as f64);
         let terms = ((resolution.degree + 1) * (resolution.degree + 2) / 2) as f64;
         let at_suns = resolution.sun_nodes as f64 * terms * LANES;
-        let shells = field_levels * levels.cuts as f64;
+        // Where profiles have more kinks than that, a shell ends at each.
+        let kinks: usize = medium.constituents.iter().map(|c| c.density.kinks().len()).sum();
+        let shells = (field_levels * levels.cuts as f64).max(kinks as f64);
         let batches = medium.wavelengths_nm.len().div_ceil(BATCH) as f64;
         let depth = medium.vertical_optical_depth().into_iter().fold(0.0, f64::max);
         // Thin air needs three directions, one of an optical depth of ten all that are kept.

@@ -42,6 +42,9 @@ pub struct Source<'a> {
 pub fn recolour(source: &Source, wanted: &Wanted) -> Result<(Manifest, Vec<Content>)> {
     let refuse = |reason: String| Error::file(source.folder, format!("bake.json: {reason}"));
     let old = source.manifest;
+    if !old.settings.is_object() {
+        return Err(refuse("settings: must be an object".into()));
+    }
     let mut planet = Planet::from_resolved(&old.preset.resolved).map_err(|e| refuse(e.to_string()))?;
     if let Some(kelvin) = wanted.star_k {
         planet.star.irradiance = black_body(kelvin, planet.star.angular_radius)?;

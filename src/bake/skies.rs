@@ -188,6 +188,9 @@ pub fn from_file(path: &Path, bytes: &[u8], wavelengths_nm: &[f64]) -> Result<[S
     let spectra = wavelengths_nm.iter().map(|nm| channel(&spectral_channel(Spectral::Ratio, *nm)));
     let spectra = spectra.collect::<Result<Vec<_>>>()?;
     let (numbers, suns) = (channel(SAMPLE)?, channel(MU_S)?);
+    if let Some(odd) = atlas.channels.iter().find(|c| c.samples.first_not_finite().is_some()) {
+        return Err(Error::file(path, format!("channel {} has a number that is not finite", odd.name)));
+    }
     let mut samples: [Skies; 2] = Default::default();
     for k in 0..atlas.width {
         let sample = &mut samples[usize::from(numbers.samples.get(k) > 0.5)];

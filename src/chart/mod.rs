@@ -14,7 +14,7 @@ mod work;
 
 pub use front::{Cost, Measure, Quantity, Statistic, exceptions, front, mark};
 pub use measure::{Errors, Measured};
-pub use row::{Row, checks_csv, read_csv, rows, to_csv};
+pub use row::{Row, checks_csv, parse_csv, read_csv, rows, to_csv};
 pub use truth::{Check, Scene, Truth};
 
 use crate::error::Result;

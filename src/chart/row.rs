@@ -2,6 +2,7 @@
 
 use super::{Chart, Errors};
 use crate::error::{Error, Result};
+use crate::input::{self, MOST_CSV};
 use crate::methods::Family;
 use crate::quality::{Distribution, REGIONS, digits};
 use serde::{Deserialize, Serialize};
@@ -109,7 +110,15 @@ pub fn to_csv(rows: &[Row]) -> Result<Vec<u8>> {
 /// # Errors
 /// `File` for what is no chart.
 pub fn read_csv(path: &Path) -> Result<Vec<Row>> {
-    let mut reader = csv::Reader::from_path(path).map_err(|e| Error::file(path, e))?;
+    parse_csv(path, input::text(path, MOST_CSV)?.as_bytes())
+}
+
+/// The same of a text; `path` is for messages only.
+///
+/// # Errors
+/// As [`read_csv`].
+pub fn parse_csv(path: &Path, text: &[u8]) -> Result<Vec<Row>> {
+    let mut reader = csv::Reader::from_reader(text);
     reader.deserialize().collect::<std::result::Result<_, _>>().map_err(|e| Error::file(path, e))
 }
 

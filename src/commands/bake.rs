@@ -10,7 +10,6 @@ mod summary;
 pub(super) mod window;
 
 use super::machine::{IsaChoice, orders, share_threads, water_orders};
-use super::memory;
 use crate::bake::bake;
 use crate::bake::memory::estimate;
 use crate::bake::settings::{Layout, Settings, TOLERANCE};
@@ -19,6 +18,7 @@ use crate::error::{Error, Result};
 use crate::export::claim::Claim;
 use crate::export::container::Container;
 use crate::export::staging::Staging;
+use crate::memory;
 use crate::plan::{Plan, load_waters};
 use crate::preset::{self, Planet, Tolerance};
 use crate::spectrum::{Adaptation, ColourSpace, White};
@@ -26,6 +26,7 @@ use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
 use jobs::{Bounds, run_all};
 use progress::{Progress, stages};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use summary::{Done, Outcome};
 
@@ -199,6 +200,15 @@ pub fn run(args: &Args) -> Result<()> {
     depfile::write(args, &asked, &names)
 }
 
+/// What the arguments ask for of a planet that is not to be planned.
+///
+/// # Errors
+/// `Argument` for options that do not go together, `File` for waters that cannot be read.
+pub fn settings_of(args: &Args, planet: &Planet) -> Result<Settings> {
+    let (settings, sized) = settings::settings(args)?;
+    Ok(settings::for_planet(&settings, sized, planet))
+}
+
 /// The settings of one preset's bake.
 fn of_preset(args: &Args, settings: &Settings, asked: &str) -> Settings {
     Settings { shipped_preset: args.set.is_empty() && preset::is_shipped(asked), ..settings.clone() }
@@ -206,10 +216,11 @@ fn of_preset(args: &Args, settings: &Settings, asked: &str) -> Settings {
 
 /// Two planets of one name would share a folder, and the first bake would be lost in silence.
 fn refuse_shared_folders(asked: &[String], planets: &[Result<Planet>]) -> Result<()> {
-    let name = |k: usize| planets[k].as_ref().ok().map(|p| p.name.as_str());
-    for k in 0..planets.len() {
-        if let Some(j) = (0..k).find(|&j| name(j).is_some() && name(j) == name(k)) {
-            let (one, two, name) = (&asked[j], &asked[k], name(k).unwrap_or_default());
+    let mut seen = BTreeMap::new();
+    for (k, planet) in planets.iter().enumerate() {
+        let Ok(Planet { name, .. }) = planet else { continue };
+        if let Some(j) = seen.insert(name, k) {
+            let (one, two) = (&asked[j], &asked[k]);
             let reason = format!("{one} and {two} are both named {name}: one folder for two bakes");
             return Err(Error::Argument(reason));
         }
@@ -233,6 +244,9 @@ fn bake_all(
     let attempt = |k: usize, busy: Busy| {
         let planet = planets[k].as_ref().ok()?;
         let settings = of_preset(args, &all[k], &asked[k]);
+        if let Err(error) = affordable(args, &planet.name, needs[k]) {
+            return Some(Err(error));
+        }
         if needs[k] > memory && planets.len() > 1 {
             let (need, bound) = (memory::shown(needs[k]), memory::shown(memory));
             progress
@@ -271,6 +285,18 @@ fn outcome(args: &Args, asked: &str, planet: Result<Planet>, answer: Option<Resu
 /// Half of what is free now, so that what else runs here has room; 2 GiB where the system does not say.
 fn default_memory() -> u64 {
     memory::available().map_or(2 << 30, |free| free / 2)
+}
+
+/// Refuses a bake that would take more than this machine has left, before it takes anything; who gives it so much by
+/// `--memory` knows better.
+fn affordable(args: &Args, name: &str, need: u64) -> Result<()> {
+    if args.memory.is_some_and(|given| given >= need) {
+        return Ok(());
+    }
+    memory::check(need).map_err(|reason| {
+        let mend = "bake smaller tables or fewer wavelengths, or say --memory if that much can be had";
+        Error::machine(args.out.join(name), std::io::Error::other(format!("{reason}: {mend}")))
+    })
 }
 
 /// What to do where another process bakes the same folder.

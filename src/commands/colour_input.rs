@@ -1,8 +1,8 @@
 //! Spectra for `tyndall colour`: columns of a CSV file, or black bodies.
 
 use crate::error::{Error, Result};
+use crate::input::{self, MOST_CSV};
 use crate::spectrum::{OBSERVER_RANGE, Spectrum, planck_law};
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// A spectrum with the name of its column.
@@ -15,15 +15,10 @@ pub struct Named {
 /// a spectrum; lines that start with # are comments. Errors name file, line, column and value.
 pub fn read(path: Option<&Path>) -> Result<Vec<Named>> {
     match path {
-        Some(path) if path != Path::new("-") => {
-            let text = std::fs::read_to_string(path).map_err(|e| Error::reading(path, e))?;
-            parse(path, &text)
-        }
+        Some(path) if path != Path::new("-") => parse(path, &input::text(path, MOST_CSV)?),
         _ => {
-            let mut text = String::new();
             let label = PathBuf::from("(standard input)");
-            std::io::stdin().read_to_string(&mut text).map_err(|e| Error::reading(&label, e))?;
-            parse(&label, &text)
+            parse(&label, &input::text_of(&label, std::io::stdin(), MOST_CSV)?)
         }
     }
 }

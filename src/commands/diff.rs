@@ -97,12 +97,7 @@ pub struct ViewDifference {
 /// # Errors
 /// `Check` if one is beyond a tolerance, `File` if a bake is missing or damaged.
 pub fn run(args: &Args) -> Result<()> {
-    let (a, b) = (open(&args.a)?, open(&args.b)?);
-    let found = Found {
-        changes: inputs::differences(&inputs::recorded(&a.manifest), &inputs::recorded(&b.manifest)),
-        tables: tables::compare(&a, &b)?,
-        views: views::compare(&a, &b, args.views as usize)?,
-    };
+    let found = compare(&args.a, &args.b, args.views as usize)?;
     let beyond = found.beyond(args);
     text::print(&tell::told(args, &found, beyond.is_empty()))?;
     match beyond.as_slice() {
@@ -112,6 +107,19 @@ pub fn run(args: &Args) -> Result<()> {
             Err(Error::Check(format!("beyond the tolerance: {first}{more}")))
         }
     }
+}
+
+/// What two bakes have not in common, with so many views of each region.
+///
+/// # Errors
+/// `File` if a bake is missing or damaged.
+pub fn compare(a: &Path, b: &Path, views: usize) -> Result<Found> {
+    let (a, b) = (open(a)?, open(b)?);
+    Ok(Found {
+        changes: inputs::differences(&inputs::recorded(&a.manifest), &inputs::recorded(&b.manifest)),
+        tables: tables::compare(&a, &b)?,
+        views: views::compare(&a, &b, views)?,
+    })
 }
 
 fn open(bake: &Path) -> Result<Bake> {

@@ -6,7 +6,6 @@ pub mod colour;
 pub mod colour_input;
 pub mod diff;
 mod machine;
-mod memory;
 pub mod plan;
 pub mod presets;
 mod presets_colour;

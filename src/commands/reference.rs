@@ -1,10 +1,12 @@
 //! `tyndall reference`: the Monte Carlo path tracer on the command line, radiances as CSV with standard errors.
 
 use super::machine::{in_range, with_threads};
+use super::text::stream;
 use crate::error::{Error, Result};
 use crate::medium::Medium;
+use crate::memory;
 use crate::points::{Answer, Point, read_points, write_answers};
-use crate::reference::{Estimate, Settings, Tracer};
+use crate::reference::{Estimate, ORDERS, Settings, Tracer};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
@@ -78,11 +80,17 @@ pub fn run(args: &Args) -> Result<()> {
     if let Some(name) = &args.water {
         return super::reference_water::run(args, name, &medium, &points);
     }
+    fits(args, points.len())?;
     let estimates = with_threads(args.threads, || trace(args, &medium, &points))?;
     complain(args, &estimates);
-    let mut out = Vec::new();
-    write(&mut out, args, &medium, &points, &estimates).map_err(|e| Error::machine("(memory)", e))?;
-    std::io::stdout().write_all(&out).map_err(|e| Error::machine("stdout", e))
+    stream(|out| write(out, args, &medium, &points, &estimates))
+}
+
+/// Whether the answers fit into memory, each with its orders.
+fn fits(args: &Args, points: usize) -> Result<()> {
+    let answers = points * args.wavelengths.len();
+    memory::check((answers * (size_of::<Estimate>() + ORDERS * size_of::<(f64, f64)>())) as u64)
+        .map_err(|reason| Error::file(&args.points, format!("the answer {reason}: split it")))
 }
 
 fn medium(args: &Args) -> Result<Medium> {
@@ -138,7 +146,7 @@ fn complain(args: &Args, estimates: &[Vec<Estimate>]) {
 }
 
 fn write(
-    out: &mut Vec<u8>,
+    out: &mut dyn Write,
     args: &Args,
     medium: &Medium,
     points: &[Point],

@@ -2,6 +2,7 @@
 
 use super::machine::with_threads;
 use super::reference::Args;
+use super::text::stream;
 use crate::error::{Error, Result};
 use crate::medium::Medium;
 use crate::points::{Answer, Point, write_answers};
@@ -9,7 +10,6 @@ use crate::preset;
 use crate::reference::Tracer;
 use crate::reference::water::{Air, Look, WaterTracer};
 use crate::sky::water::WaterView;
-use std::io::Write;
 
 /// Paths for each point and wavelength unless a number is given.
 const PATHS: u64 = 1 << 18;
@@ -42,7 +42,5 @@ pub fn run(args: &Args, name: &str, air: &Medium, points: &[Point]) -> Result<()
             (*p, Answer { wavelength_nm, radiance, stderr: Some(stderr) })
         })
     });
-    let mut out = Vec::new();
-    write_answers(&mut out, rows).map_err(|e| Error::machine("(memory)", e))?;
-    std::io::stdout().write_all(&out).map_err(|e| Error::machine("stdout", e))
+    stream(|out| write_answers(out, rows))
 }

@@ -2,10 +2,11 @@
 
 use super::machine::{IsaChoice, MOST_ORDERS, in_range, orders, wavelengths, with_threads};
 use super::sample_water;
-use super::text::print;
+use super::text::stream;
 use crate::error::{Error, Result};
 use crate::export::manifest::Manifest;
 use crate::medium::Medium;
+use crate::memory;
 use crate::points::{Answer, Point, read_points, write_answers};
 use crate::preset::Planet;
 use crate::sky::{AerosolPhase, Channels, Component, Sky};
@@ -73,16 +74,15 @@ pub fn run(args: &Args) -> Result<()> {
     if let Some(name) = &args.water {
         return sample_water::run(args, name, &manifest, &planet, &points);
     }
-    let mut out = Vec::new();
-    let text = |e| Error::machine("the answer", e);
     if args.exact {
         let nm = exact_wavelengths(args, &manifest)?;
         let refuse = |reason: String| Error::file(&args.bake, format!("bake.json: {reason}"));
         let medium = planet.medium(&nm);
         medium.check().map_err(refuse)?;
         let baked = baked_orders(&manifest).map_err(refuse)?;
+        fits(args, points.len(), nm.len())?;
         let light = with_threads(args.threads, || exact(args, &medium, baked, &points))?;
-        spectral(&mut out, args, &planet, &points, &nm, &light).map_err(text)?;
+        stream(|out| spectral(out, args, &planet, &points, &nm, &light))
     } else {
         let sky = Sky::open(&args.bake, &manifest, &layout(args, &manifest)?)?;
         refuse_outside(&args.points, &points, &sky)?;
@@ -93,20 +93,25 @@ pub fn run(args: &Args) -> Result<()> {
             return Err(Error::file(&args.bake, reason));
         }
         match sky.channels() {
-            Channels::Wavelengths(nm) => {
-                spectral(&mut out, args, &planet, &points, &nm, &light).map_err(text)?
-            }
+            Channels::Wavelengths(nm) => stream(|out| spectral(out, args, &planet, &points, &nm, &light)),
             Channels::Rgb => {
                 eprintln!(
                     "this layout holds colour: answers are linear RGB ({}), {}",
                     manifest.colour.space,
                     if args.absolute { "cd/m²" } else { "luminance over the star's illuminance, 1/sr" }
                 );
-                colours(&mut out, args, &manifest, &points, &light).map_err(text)?;
+                stream(|out| colours(out, args, &manifest, &points, &light))
             }
         }
     }
-    print(&String::from_utf8_lossy(&out))
+}
+
+/// Whether so many answers fit into memory.
+pub(super) fn fits(args: &Args, points: usize, wavelengths: usize) -> Result<()> {
+    // A list of numbers for each view.
+    let each = size_of::<Vec<f64>>() + wavelengths * size_of::<f64>();
+    memory::check((points * each) as u64)
+        .map_err(|reason| Error::file(&args.points, format!("the answer {reason}: split it")))
 }
 
 /// Views that tables of a window do not hold are refused, not answered by the nearest.
@@ -183,7 +188,7 @@ fn exact(args: &Args, medium: &Medium, baked: Orders, points: &[Point]) -> Vec<V
 }
 
 pub(super) fn spectral(
-    out: &mut Vec<u8>,
+    out: &mut dyn Write,
     args: &Args,
     planet: &Planet,
     points: &[Point],
@@ -202,7 +207,7 @@ pub(super) fn spectral(
 }
 
 fn colours(
-    out: &mut Vec<u8>,
+    out: &mut dyn Write,
     args: &Args,
     manifest: &Manifest,
     points: &[Point],

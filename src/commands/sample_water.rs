@@ -1,8 +1,8 @@
 //! `tyndall sample --water`: the light out of a baked water, and the slab solver's own beside it.
 
 use super::machine::{MOST_WATER_ORDERS, with_threads};
-use super::sample::{Args, baked_orders, exact_wavelengths, spectral};
-use super::text::print;
+use super::sample::{Args, baked_orders, exact_wavelengths, fits, spectral};
+use super::text::stream;
 use crate::bake::water::{FINE, Skylight, Split};
 use crate::error::{Error, Result};
 use crate::export::manifest::Manifest;
@@ -39,6 +39,7 @@ pub fn run(args: &Args, name: &str, manifest: &Manifest, planet: &Planet, points
     let views = points.iter().map(meet).collect::<Result<Vec<_>>>()?;
     let (nm, light) = if args.exact {
         let nm = exact_wavelengths(args, manifest)?;
+        fits(args, points.len(), nm.len())?;
         let light = with_threads(args.threads, || exact(args, name, manifest, planet, &nm, &views))??;
         (nm, light)
     } else {
@@ -48,9 +49,7 @@ pub fn run(args: &Args, name: &str, manifest: &Manifest, planet: &Planet, points
         };
         (sky.wavelengths_nm.clone(), views.iter().map(ask).collect())
     };
-    let mut out = Vec::new();
-    spectral(&mut out, args, planet, points, &nm, &light).map_err(|e| Error::machine("the answer", e))?;
-    print(&String::from_utf8_lossy(&out))
+    stream(|out| spectral(out, args, planet, points, &nm, &light))
 }
 
 /// Solved afresh, air and water, `[view][wavelength]`.

@@ -1,14 +1,15 @@
 //! `tyndall verify`: do the files of a bake match their manifest, its preset, and this tool?
 
 use super::text;
-use crate::error::{Error, Result};
+use crate::error::{Error, Line, Result};
 use crate::export::atlas::{Atlas, Samples};
 use crate::export::exr::from_exr_bytes;
 use crate::export::manifest::{MANIFEST, Manifest, Precision, Table, hash_of};
+use crate::input;
 use crate::preset;
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 /// Arguments of `tyndall verify`.
 #[derive(Debug, clap::Args)]
@@ -63,7 +64,8 @@ fn told(args: &Args, differences: &[Difference]) -> String {
     if differences.is_empty() {
         return format!("{bake}: every file matches its manifest\n");
     }
-    differences.iter().map(|d| format!("{bake}: {}: {}\n", d.place, d.what)).collect()
+    let line = |d: &Difference| format!("{}: {}: {}\n", Line(&bake), Line(&d.place), Line(&d.what));
+    differences.iter().map(line).collect()
 }
 
 /// What differs in the bake at `bake`. `shipped` gives the hash of the preset of a name that this tool ships; it
@@ -136,10 +138,10 @@ fn about_the_manifest(manifest: &Manifest, shipped: impl Fn(&str) -> Option<Stri
 
 /// A file's presence and hash, then what `content` finds in it.
 fn check_file(folder: &Path, file: &str, hash: &str, content: impl Fn(&[u8]) -> Vec<String>) -> Vec<String> {
-    if !Path::new(file).components().all(|c| matches!(c, Component::Normal(_))) {
+    if !input::is_inside(file) {
         return vec!["the manifest points outside the bake".into()];
     }
-    match fs::read(folder.join(file)) {
+    match input::part(folder, file) {
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => vec!["is missing".into()],
         Err(e) => vec![format!("cannot be read: {e}")],
         Ok(bytes) => {

@@ -21,7 +21,10 @@ impl Claim {
     pub fn try_take(target: &Path) -> Result<Option<Claim>> {
         let path = beside(target)?;
         loop {
-            let file = File::create(&path).map_err(|e| Error::machine(&path, e))?;
+            // What stands there is not emptied: it might be a link to somebody's file.
+            let mut open = File::options();
+            let file = open.write(true).create(true).truncate(false).open(&path);
+            let file = file.map_err(|e| Error::machine(&path, e))?;
             match file.try_lock() {
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => return Ok(None),
@@ -86,6 +89,19 @@ fn is_still(_: &File, _: &Path) -> bool {
 mod tests {
     use super::*;
     use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
+
+    /// A link of the lock's name is gone afterwards, and the file it led to is as it was.
+    #[cfg(unix)]
+    #[test]
+    fn a_link_in_its_place() {
+        let dir = tempfile::tempdir().unwrap();
+        let thesis = dir.path().join("thesis.txt");
+        fs::write(&thesis, "years").unwrap();
+        std::os::unix::fs::symlink(&thesis, dir.path().join(".phobos.lock")).unwrap();
+        drop(Claim::take(&dir.path().join("phobos")).unwrap());
+        assert_eq!(fs::read_to_string(&thesis).unwrap(), "years");
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
+    }
 
     /// One has it at a time, however many want it, each gets it, and nothing is left.
     #[test]

@@ -1,6 +1,7 @@
 //! `bake.json`: everything that a reader of a bake's files has to know, and nothing of the machine or the moment.
 
 use crate::error::{Error, Result};
+use crate::input::{self, MOST_JSON};
 use crate::spectrum::Adaptation;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -280,7 +281,7 @@ impl Manifest {
     /// `File` if it is missing, malformed (with line and column), or of a newer version.
     pub fn read(bake: &Path) -> Result<Manifest> {
         let path = path_in(bake)?;
-        let text = std::fs::read_to_string(&path).map_err(|e| Error::reading(&path, e))?;
+        let text = input::named_text(&path, MOST_JSON)?;
         Manifest::parse(&path, &text)
     }
 

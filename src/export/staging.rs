@@ -144,7 +144,10 @@ fn sweep(target: &Path) {
     };
     for path in entries.flatten().map(|entry| entry.path()) {
         let (temp, old) = (begins(&path, "tmp"), begins(&path, "old"));
-        let Some(_lock) = File::open(&path).ok().filter(|f| (temp || old) && f.try_lock().is_ok()) else {
+        // No pipe of that name, which would not open, and no link to somebody's folder.
+        let ours = (temp || old) && fs::symlink_metadata(&path).is_ok_and(|m| m.is_dir());
+        let open = || File::open(&path).ok().filter(|f| f.try_lock().is_ok());
+        let Some(_lock) = ours.then(open).flatten() else {
             continue;
         };
         let back = old && path.join(MANIFEST).is_file() && fs::rename(&path, target).is_ok();

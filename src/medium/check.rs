@@ -9,6 +9,10 @@ pub const MOST_HEIGHT: f64 = 10.0;
 /// Largest vertical optical depth; a thousand times that of the thickest clouds.
 pub const MOST_DEPTH: f64 = 1e5;
 
+/// Nodes of a density profile at most, far more than shipped planets have: the solver has a shell for each, and with five
+/// thousand a bake of small tables took minutes.
+pub const MOST_NODES: usize = 1000;
+
 /// Radii of ground and top (m) that make a shell of air; the reason where they do not.
 pub fn check_shell(ground: f64, top: f64) -> Result<(), String> {
     if !(ground > 0.0 && top > ground) {
@@ -106,6 +110,9 @@ impl DensityProfile {
             DensityProfile::Tent { bottom, centre, top } => rising(&[*bottom, *centre, *top]),
             DensityProfile::Layer { bottom, top } => rising(&[*bottom, *top]),
             DensityProfile::Linear { nodes } | DensityProfile::LogLinear { nodes } => {
+                if nodes.len() > MOST_NODES {
+                    return Err(format!("{} nodes: {MOST_NODES} are the most", nodes.len()));
+                }
                 let least =
                     if matches!(self, DensityProfile::Linear { .. }) { 0.0 } else { f64::MIN_POSITIVE };
                 if let Some((z, d)) = nodes.iter().find(|n| !(n.1 >= least && n.1.is_finite())) {

@@ -6,7 +6,7 @@ mod density;
 mod phase;
 mod water;
 
-pub use check::check_shell;
+pub use check::{MOST_NODES, check_shell};
 pub use density::DensityProfile;
 pub use phase::PhaseFunction;
 pub use water::{WaterMedium, WaterScatterer};

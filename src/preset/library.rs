@@ -1,6 +1,7 @@
 //! The presets and spectra that are inside the binary.
 
 use crate::error::{Error, Result};
+use crate::input::{self, MOST_CSV};
 use crate::spectrum::Spectrum;
 use std::path::{Path, PathBuf};
 
@@ -144,7 +145,7 @@ pub fn spectrum(name: &str, quantity: &str, beside: &str) -> Result<Option<Spect
         return parse(&format!("presets/spectra/{name}.csv"), text, quantity).map(Some);
     }
     let Some(path) = spectrum_path(name, beside) else { return Ok(None) };
-    let text = std::fs::read_to_string(&path).map_err(|e| Error::reading(&path, e))?;
+    let text = input::named_text(&path, MOST_CSV)?;
     parse(&path.display().to_string(), &text, quantity).map(Some)
 }
 
@@ -157,7 +158,8 @@ pub fn spectrum_path(name: &str, beside: &str) -> Option<PathBuf> {
     Some(if near.exists() { near } else { Path::new(name).to_path_buf() })
 }
 
-fn parse(file: &str, text: &str, quantity: &str) -> Result<Spectrum> {
+/// A spectrum from the text of such a file; `file` is for messages only.
+pub fn parse(file: &str, text: &str, quantity: &str) -> Result<Spectrum> {
     let has_source = |l: &str| l.strip_prefix("# source:").is_some_and(|s| !s.trim().is_empty());
     if !text.lines().any(has_source) {
         return Err(Error::file(file, "numbers without a source: a line `# source: …` is missing"));
@@ -170,8 +172,8 @@ fn parse(file: &str, text: &str, quantity: &str) -> Result<Spectrum> {
     }
     let (mut wavelengths, mut values) = (Vec::new(), Vec::new());
     for (number, line) in lines {
-        let row: Vec<f64> = line.split(',').filter_map(|t| t.trim().parse().ok()).collect();
-        let &[wavelength, value] = row.as_slice() else {
+        let row: Option<Vec<f64>> = line.split(',').map(|t| t.trim().parse().ok()).collect();
+        let Some(&[wavelength, value]) = row.as_deref() else {
             return Err(Error::file(file, format!("line {}: `{line}` is not two numbers", number + 1)));
         };
         wavelengths.push(wavelength);
@@ -218,6 +220,7 @@ mod tests {
         assert!(refuse(&good.replace("# source: me 2020", "# source:")).contains("without a source"));
         assert!(refuse(&good.replace("cross_section_m2", "irradiance")).contains("header"));
         assert!(refuse(&good.replace("2e-28", "x")).contains("line 4"));
+        assert!(refuse(&good.replace("2e-28", "x,2e-28")).contains("line 4"));
         assert!(refuse(&good.replace("500", "300")).contains("must rise"));
     }
 }

@@ -29,7 +29,9 @@ mod water;
 
 pub use coefficient::Coefficient;
 pub use files::{planet_files, water_files};
-pub use library::{shipped, shipped_names, shipped_scenes, shipped_water_names, shipped_waters};
+pub use library::{
+    parse as read_spectrum, shipped, shipped_names, shipped_scenes, shipped_water_names, shipped_waters,
+};
 pub use phase::{KingFactor, PhaseLaw, Stated};
 pub use planet::{Optics, Planet, Star, Substance};
 pub use rayleigh::{AIR_NUMBER_DENSITY, air_cross_section, air_king_factor, air_refractivity};
@@ -37,6 +39,7 @@ pub use scene::{Budget, Metric, Scene, SceneWater, Tolerance};
 pub use water::{Water, WaterLaw, WaterSubstance};
 
 use crate::error::{Error, Result};
+use crate::input::{self, MOST_JSON};
 use raw::Raw;
 use std::path::Path;
 
@@ -64,7 +67,12 @@ pub fn load_scene(name_or_path: &str) -> Result<Scene> {
             find_file(name_or_path, "scene", names)?
         }
     };
-    read_scene::scene(&Raw::root(&file, &json::parse(&file, &text)?))
+    read_scene(&file, &text)
+}
+
+/// A scene from JSON text; `file` is for messages only.
+pub fn read_scene(file: &str, text: &str) -> Result<Scene> {
+    read_scene::scene(&Raw::root(file, &json::parse(file, text)?))
 }
 
 /// Whether a name or path means a water and not a planet: a shipped water, or a file with its mark.
@@ -72,9 +80,12 @@ pub fn is_water(name_or_path: &str) -> bool {
     if shipped_water_names().any(|shipped| shipped == name_or_path) {
         return true;
     }
-    let text = std::fs::read_to_string(name_or_path);
+    if is_shipped(name_or_path) {
+        return false;
+    }
+    let text = input::text(Path::new(name_or_path), MOST_JSON);
     let value = text.ok().and_then(|t| serde_json::from_str::<serde_json::Value>(&t).ok());
-    !is_shipped(name_or_path) && value.is_some_and(|v| v.get(read_water::MARK).is_some())
+    value.is_some_and(|v| v.get(read_water::MARK).is_some())
 }
 
 /// Whether `name` is that of a shipped preset, which [`load`] then takes, and not the path of a file.
@@ -110,7 +121,7 @@ fn changed(file: &str, text: &str, set: &[String]) -> Result<serde_json::Value> 
 fn find_file(name_or_path: &str, what: &str, names: Vec<&str>) -> Result<(String, String)> {
     let path = Path::new(name_or_path);
     if path.extension().is_some() || path.components().count() > 1 {
-        let text = std::fs::read_to_string(path).map_err(|e| Error::reading(path, e))?;
+        let text = input::text(path, MOST_JSON)?;
         return Ok((name_or_path.to_string(), text));
     }
     let nearest = raw::nearest(name_or_path, names);
@@ -125,7 +136,7 @@ fn find_water(name_or_path: &str) -> Result<(String, String)> {
     }
     let path = Path::new(name_or_path);
     if path.extension().is_some() || path.components().count() > 1 {
-        let text = std::fs::read_to_string(path).map_err(|e| Error::reading(path, e))?;
+        let text = input::text(path, MOST_JSON)?;
         return Ok((name_or_path.to_string(), text));
     }
     let nearest = raw::nearest(name_or_path, shipped_water_names());
@@ -141,7 +152,7 @@ fn find(name_or_path: &str) -> Result<(String, String)> {
     }
     let path = Path::new(name_or_path);
     if path.extension().is_some() || path.components().count() > 1 {
-        let text = std::fs::read_to_string(path).map_err(|e| Error::reading(path, e))?;
+        let text = input::text(path, MOST_JSON)?;
         return Ok((name_or_path.to_string(), text));
     }
     let nearest = raw::nearest(name_or_path, shipped_names());

@@ -1,5 +1,6 @@
 //! A planet as the rest of the program sees it: validated, in SI.
 
+use super::read_planet::check_name;
 use super::{Coefficient, PhaseLaw};
 use crate::error::{Error, Result};
 use crate::medium::{Constituent, DensityProfile, Medium, Role, check_shell};
@@ -135,6 +136,8 @@ impl Planet {
     pub fn from_resolved(value: &Value) -> Result<Planet> {
         let refuse = |reason: String| Error::Argument(format!("resolved preset: {reason}"));
         let planet: Planet = Planet::deserialize(value).map_err(|e| refuse(e.to_string()))?;
+        // It becomes a folder's where the bake is recoloured.
+        check_name(&planet.name).map_err(|reason| refuse(format!("name: {reason}")))?;
         check_shell(planet.ground_radius, planet.top_radius)
             .map_err(|reason| refuse(format!("ground_radius_m, top_radius_m: {reason}")))?;
         for c in &planet.constituents {

@@ -207,9 +207,14 @@ pub fn bears_numbers(value: &Value) -> bool {
 /// The candidate most like a word: the least share of letters to change (Damerau–Levenshtein), the first of
 /// equals; "" where there is none.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> &'a str {
-    let difference = |c: &&str| -strsim::normalized_damerau_levenshtein(word, c);
+    // The comparison takes memory as the product of lengths, and the word may be a stranger's of megabytes.
+    let word: String = word.chars().take(MOST_COMPARED).collect();
+    let difference = |c: &&str| -strsim::normalized_damerau_levenshtein(&word, c);
     candidates.into_iter().min_by(|a, b| difference(a).total_cmp(&difference(b))).unwrap_or("")
 }
+
+/// Letters of a word that are compared: more than any key has.
+const MOST_COMPARED: usize = 64;
 
 fn quoted(keys: &[&str]) -> String {
     keys.iter().map(|k| format!("`{k}`")).collect::<Vec<_>>().join(", ")

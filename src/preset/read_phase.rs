@@ -18,6 +18,9 @@ pub const KINDS: [&str; 6] = [
     "tabulated",
 ];
 
+/// Angles of a tabulated phase function at most: one every hundredth of a degree, and some.
+const MOST_ANGLES: usize = 20_000;
+
 /// The King factor of air as a formula.
 pub const AIR_KING_FACTOR: &str = "bodhaine1999";
 
@@ -74,6 +77,9 @@ fn tabulated(raw: &Raw) -> Result<PhaseLaw> {
     raw.only(&["kind", "angles_deg", "wavelengths_nm", "values"])?;
     let angles_key = raw.need("angles_deg")?;
     let angles = angles_key.rising(2)?;
+    if angles.len() > MOST_ANGLES {
+        return Err(angles_key.refuse(format!("{} angles: {MOST_ANGLES} are the most", angles.len())));
+    }
     if angles[0] != 0.0 || angles[angles.len() - 1] != 180.0 {
         return Err(angles_key.refuse("must go from 0 to 180"));
     }

@@ -16,8 +16,10 @@ const ASTRONOMICAL_UNIT: f64 = 149_597_870_700.0;
 pub const DISTANCE_AU: Bounds = Bounds::up_to(0.0, 1e6, "greater than 0, and 1e6 at the most");
 pub const ANGULAR_RADIUS_DEG: Bounds = Bounds::between(0.0, 90.0, "greater than 0 and less than 90");
 pub const BLACK_BODY_K: Bounds = Bounds::within(100.0, 1e6, "between 100 and 1000000");
+/// Letters of a name at most, as in [`NAME`].
+const MOST_NAME: usize = 100;
 /// What the name of a planet or water may consist of, as a regular expression.
-pub const NAME: &str = "^[a-z0-9-]+$";
+pub const NAME: &str = "^[a-z0-9-]{1,100}$";
 
 /// The whole planet.
 pub fn planet(raw: &Raw) -> Result<Planet> {
@@ -81,11 +83,21 @@ pub fn schema_key(raw: &Raw) -> Result<()> {
 pub fn name(raw: &Raw) -> Result<String> {
     let raw = raw.need("name")?;
     let text = raw.text()?;
+    check_name(text).map_err(|reason| raw.refuse(reason))?;
+    Ok(text.to_string())
+}
+
+/// Whether a text can be a name; the reason why not.
+pub fn check_name(text: &str) -> std::result::Result<(), String> {
     let good = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     if text.is_empty() || !text.chars().all(good) {
-        return Err(raw.refuse("must consist of lower-case letters, digits and dashes"));
+        return Err("must consist of lower-case letters, digits and dashes".into());
     }
-    Ok(text.to_string())
+    // A folder's name may have 255 bytes, and a bake adds some of its own while it is written.
+    if text.len() > MOST_NAME {
+        return Err(format!("must have {MOST_NAME} letters at most"));
+    }
+    Ok(())
 }
 
 fn star(raw: &Raw) -> Result<Star> {

@@ -3,7 +3,7 @@
 use super::bounds::{Bounds, NOT_NEGATIVE, POSITIVE};
 use super::raw::{MOST_METRES, Raw};
 use crate::error::Result;
-use crate::medium::DensityProfile;
+use crate::medium::{DensityProfile, MOST_NODES};
 
 pub const KINDS: [&str; 5] = ["exponential", "tent", "layer", "linear", "log_linear"];
 
@@ -45,6 +45,10 @@ fn nodes(raw: &Raw, bounds: Bounds) -> Result<Vec<(f64, f64)>> {
     raw.only(&["kind", "altitudes_km", "altitudes_m", "densities"])?;
     let (unit, altitudes) = raw.one_of(&["altitudes_km", "altitudes_m"])?;
     let densities = raw.need("densities")?;
+    let count = altitudes.items()?.len();
+    if count > MOST_NODES {
+        return Err(altitudes.refuse(format!("{count} altitudes: {MOST_NODES} are the most")));
+    }
     let (z, d) = (altitudes.rising(2)?, densities.numbers_in(bounds)?);
     if z[0] < 0.0 {
         return Err(altitudes.refuse("altitudes must be 0 or more"));

@@ -9,8 +9,9 @@ use crate::error::Result;
 const DEGREES: Bounds = Bounds::within(-90.0, 90.0, "between -90 and 90");
 const AZIMUTH: Bounds = Bounds::within(0.0, 180.0, "between 0 and 180");
 const SHARE_PERCENT: Bounds = Bounds::within(50.0, 99.9, "between 50 and 99.9");
-const PERCENT: Bounds = Bounds::up_to(0.0, 1000.0, "greater than 0, and 1000 at the most");
-const DELTA_E: Bounds = Bounds::up_to(0.0, 100.0, "greater than 0, and 100 at the most");
+// Below the least, a share of it would be none.
+const PERCENT: Bounds = Bounds::within(1e-9, 1000.0, "between 1e-9 and 1000");
+const DELTA_E: Bounds = Bounds::within(1e-9, 100.0, "between 1e-9 and 100");
 
 /// Key that tells a scene from other presets.
 pub const MARK: &str = "tolerance";

@@ -1,5 +1,6 @@
 //! A body of water as the rest of the program sees it: validated, in SI.
 
+use super::read_planet::check_name;
 use super::{Coefficient, PhaseLaw};
 use crate::error::{Error, Result};
 use crate::medium::{WaterMedium, WaterScatterer};
@@ -90,6 +91,7 @@ impl Water {
     pub fn from_resolved(value: &Value) -> Result<Water> {
         let refuse = |reason: String| Error::Argument(format!("resolved water: {reason}"));
         let water = Water::deserialize(value).map_err(|e| refuse(e.to_string()))?;
+        check_name(&water.name).map_err(|reason| refuse(format!("name: {reason}")))?;
         for s in &water.substances {
             s.phase.check().map_err(|reason| refuse(format!("substances.{}.phase: {reason}", s.name)))?;
         }

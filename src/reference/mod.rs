@@ -20,6 +20,7 @@ mod shells;
 pub mod water;
 
 pub use estimate::{Estimate, Settings};
+pub use path::ORDERS;
 
 use crate::medium::Medium;
 use crate::points::Point;

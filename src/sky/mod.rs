@@ -13,6 +13,7 @@ pub mod water;
 use crate::error::{Error, Result};
 use crate::export::manifest::{Manifest, Table};
 use crate::export::{Atlas, exr};
+use crate::input;
 use crate::points::Point;
 use compact::Compact;
 use elek2010::Elek2010Sky;
@@ -142,7 +143,7 @@ pub fn pictures(bake: &Path, manifest: &Manifest, layout: &str) -> Result<BTreeM
 /// `File` for a file that is missing, damaged, or another than the one that was baked.
 pub fn picture(folder: &Path, table: &Table) -> Result<Atlas> {
     let path = folder.join(&table.file);
-    let bytes = std::fs::read(&path).map_err(|e| Error::reading(&path, e))?;
+    let bytes = input::part(folder, &table.file).map_err(|e| Error::reading(&path, e))?;
     let atlas = exr::from_exr_bytes(&path, &bytes)?;
     if blake3::hash(&bytes).to_hex().as_str() != table.blake3 {
         return Err(Error::file(&path, "not the file that was baked (bake.json has another BLAKE3)"));

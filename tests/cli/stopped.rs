@@ -67,6 +67,41 @@ fn nobody_reads_what_it_says() {
     assert_eq!((child.wait().unwrap().code(), names(dir.path())), (Some(3), vec![]));
 }
 
+/// Five bakes race for one folder, again and again, and some are killed without a chance to tidy up: what stands there
+/// afterwards is a whole bake, and one more bake sweeps what the dead have left.
+#[test]
+fn five_race_and_some_are_killed() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = dir.path().join("earth");
+    let bake = |k: usize| {
+        let set = format!("ground.albedo=0.{k}");
+        small_bake("earth", dir.path(), &["--layout", "compact", "--threads", "1", "--set", &set])
+    };
+    let start = |k| bake(k).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut killed = 0;
+    for round in 0..4 {
+        let racers: Vec<Child> = (1..6).map(start).collect();
+        for (k, mut racer) in racers.into_iter().enumerate() {
+            // Other moments in every round, from the first files to the last rename.
+            if k % 2 == 0 {
+                std::thread::sleep(Duration::from_millis(200 + 170 * round as u64 + 90 * k as u64));
+                racer.kill().unwrap();
+            }
+            let done = ran(racer.wait_with_output().unwrap());
+            killed += usize::from(done.code.is_none());
+            assert!(matches!(done.code, None | Some(0)), "{}", done.err);
+        }
+        // Not while others are at it: between two files `verify` would find the next bake in the place of the last.
+        if folder.exists() {
+            holds(&folder);
+        }
+    }
+    assert!(killed > 0, "all were too fast to be killed");
+    let last = ran(bake(7).output().unwrap());
+    assert_eq!((last.code, names(dir.path())), (Some(0), vec!["earth".into()]), "{}", last.err);
+    holds(&folder);
+}
+
 /// Two processes bake different planets of one name into one folder: both succeed, and what stands at the end
 /// is all of one of them.
 #[test]

@@ -6,7 +6,7 @@ use super::summary::Outcome;
 use super::{Args, Done};
 use crate::bake::inputs;
 use crate::bake::settings::Settings;
-use crate::error::{Error, Result};
+use crate::error::{Error, Line, Result};
 use crate::export::changes::Change;
 use crate::export::manifest::{MANIFEST, Manifest};
 use crate::preset::Planet;
@@ -108,7 +108,10 @@ fn told(args: &Args, name: &str, result: &Result<Vec<Difference>>) -> String {
     }
     match result {
         Ok(found) if found.is_empty() => format!("{folder}: current\n"),
-        Ok(found) => found.iter().map(|d| format!("{folder}: {}: {}\n", d.place, d.what)).collect(),
+        Ok(found) => found
+            .iter()
+            .map(|d| format!("{}: {}: {}\n", Line(&folder), Line(&d.place), Line(&d.what)))
+            .collect(),
         Err(error) => format!("{name}: failed: {error}\n"),
     }
 }

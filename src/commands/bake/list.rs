@@ -2,6 +2,7 @@
 
 use super::Args;
 use crate::error::{Error, Result};
+use crate::input::{self, MOST_CSV};
 use crate::preset;
 use std::path::Path;
 
@@ -38,7 +39,7 @@ pub fn asked(args: &Args) -> Result<Vec<String>> {
 /// A preset a line; `#` begins a comment. A path is from the folder of the list where such a file is there, or else
 /// from the current folder, as those of spectra are.
 fn read(file: &Path) -> Result<Vec<String>> {
-    let text = std::fs::read_to_string(file).map_err(|e| Error::reading(file, e))?;
+    let text = input::text(file, MOST_CSV)?;
     let lines = text.lines().map(|line| line.split('#').next().unwrap_or_default().trim());
     let folder = file.parent().unwrap_or(Path::new(""));
     let found: Vec<String> = lines

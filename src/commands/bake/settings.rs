@@ -19,12 +19,18 @@ use crate::transport::solve::Orders;
 /// The settings of each planet of a run: where tables are for a window, their sizes depend on the shell.
 pub fn for_planets(settings: &Settings, sized: Sized, planets: &[Result<Planet>]) -> Vec<Settings> {
     let of = |planet: &Result<Planet>| match planet {
-        Ok(planet) if settings.window != Window::WHOLE => {
-            fitted(settings, &planet.medium(&settings.wavelengths_nm), sized)
-        }
-        _ => settings.clone(),
+        Ok(planet) => for_planet(settings, sized, planet),
+        Err(_) => settings.clone(),
     };
     planets.iter().map(of).collect()
+}
+
+/// The same of one.
+pub fn for_planet(settings: &Settings, sized: Sized, planet: &Planet) -> Settings {
+    match settings.window != Window::WHOLE {
+        true => fitted(settings, &planet.medium(&settings.wavelengths_nm), sized),
+        false => settings.clone(),
+    }
 }
 
 /// Settings of the least model for a planet within a tolerance: by day and wherever there is to be, or in the window
@@ -209,8 +215,9 @@ const RESERVED: [&str; 2] = ["fresnel", "irradiance"];
 fn water_size(text: &str) -> Option<[usize; 3]> {
     let parts: Vec<usize> = text.split('x').map(|p| p.parse().ok()).collect::<Option<_>>()?;
     let size: [usize; 3] = parts.try_into().ok()?;
-    let few = size.iter().product::<usize>() <= MOST_TEXELS;
-    (few && size.iter().all(|n| (2..=1024).contains(n))).then_some(size)
+    // In this order: the product of sizes in their bounds cannot overflow.
+    (size.iter().all(|n| (2..=1024).contains(n)) && size.iter().product::<usize>() <= MOST_TEXELS)
+        .then_some(size)
 }
 
 /// Texels that a table may have: 256 million floats of four channels are four gigabytes.

@@ -1,9 +1,9 @@
 //! What came of the bakes of a run: lines, one table, or JSON.
 
-use super::super::memory;
 use super::super::text::print;
 use super::progress::Stage;
 use crate::error::{Error, Result};
+use crate::memory;
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;
 

@@ -49,7 +49,7 @@ pub fn suns(text: &str) -> Result<[f64; 2], String> {
 /// `1%`, `1dE`: what 95 % of views keep within.
 pub fn tolerance(text: &str) -> Result<Tolerance, String> {
     let form = || "expected an error of RGB in per cent or one in ΔE2000, e.g. 1% or 1dE".to_string();
-    let number = |t: &str| t.trim().parse::<f64>().ok().filter(|v| *v > 0.0 && *v <= 1000.0);
+    let number = |t: &str| t.trim().parse::<f64>().ok().filter(|v| (1e-9..=1000.0).contains(v));
     let (metric, most) = if let Some(t) = text.strip_suffix('%') {
         (Metric::Relative, number(t).ok_or_else(form)? / 100.0)
     } else {
@@ -119,7 +119,7 @@ mod tests {
         }
         assert_eq!(tolerance("2%").unwrap().most, 0.02);
         assert_eq!(tolerance("0.5dE").unwrap().metric, Metric::DeltaE);
-        assert!(["", "2", "-1%", "0dE", "x%"].iter().all(|t| tolerance(t).is_err()));
+        assert!(["", "2", "-1%", "0dE", "x%", "5e-324%", "1e999%"].iter().all(|t| tolerance(t).is_err()));
         for text in ["", "60..-6", "-91", "high", "0..nan"] {
             assert!(suns(text).is_err(), "{text}");
         }

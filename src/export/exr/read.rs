@@ -5,6 +5,7 @@ use super::header;
 use crate::error::{Error, Result};
 use crate::export::atlas::{Atlas, Attribute, Channel, Samples};
 use crate::export::manifest::Origin;
+use crate::memory;
 use exr::block::UncompressedBlock;
 use exr::block::chunk::{Chunk, CompressedBlock, TileCoordinates};
 use exr::block::reader::{ChunksReader, Reader};
@@ -138,7 +139,8 @@ fn check_size(header: &Header, types: &[(String, usize)], length: usize) -> Read
         let picture = format!("{width}x{height} texels of {texel} bytes");
         return Err(format!("truncated or damaged: {picture} cannot be in a file of {length} bytes"));
     }
-    Ok(())
+    // Unpacked tiles, their channels put together, and the table that a caller makes of them as single precision.
+    memory::check(raw.unwrap_or(0).saturating_mul(5) as u64)
 }
 
 /// Every tile, still compressed, by rows and then columns; each is there once.

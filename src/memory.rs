@@ -59,6 +59,20 @@ pub fn shown(bytes: u64) -> String {
     }
 }
 
+/// What a program may take without asking, bytes: any machine has as much.
+const SMALL: u64 = 256 << 20;
+
+/// Whether so many bytes can be had now; the reason why not. Asked before anything of a size is made that a stranger's
+/// file or a slip of the pen decides.
+pub fn check(need: u64) -> Result<(), String> {
+    match available() {
+        Some(free) if need > free.max(SMALL) => {
+            Err(format!("takes some {} of memory, and {} are free", shown(need), shown(free)))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Largest resident size of this process so far, bytes.
 pub fn peak() -> Option<u64> {
     let status = read("/proc/self/status")?;
@@ -80,6 +94,16 @@ mod tests {
         assert_eq!(parse("4096"), Ok(4096));
         for bad in ["", "GiB", "-1GB", "0", "2 lakes", "NaN", "inf", "1e30GB", "2GiB2"] {
             assert!(parse(bad).is_err(), "{bad}");
+        }
+    }
+
+    /// More than any machine has is refused, a megabyte is not.
+    #[test]
+    fn more_than_there_is() {
+        assert_eq!(check(1 << 20), Ok(()));
+        if available().is_some() {
+            let reason = check(1 << 60).unwrap_err();
+            assert!(reason.starts_with("takes some 1152921504.6 GB of memory, and "), "{reason}");
         }
     }
 
