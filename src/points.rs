@@ -36,12 +36,12 @@ const MOST_BYTES: u64 = 2 << 30;
 /// Reads points from a CSV file. Errors name the file, line, column and value.
 pub fn read_points(path: &Path) -> Result<Vec<Point>> {
     let file = std::fs::File::open(path).map_err(|e| Error::reading(path, e))?;
-    parse_points(path, std::io::BufReader::new(file.take(MOST_BYTES)))
+    parse_points(path, std::io::BufReader::new(file))
 }
 
 /// [`read_points`] of any stream; `path` is for messages only.
 pub fn parse_points(path: &Path, stream: impl std::io::Read) -> Result<Vec<Point>> {
-    let rows = Rows { stream, length: 0 };
+    let rows = Rows { stream, length: 0, left: MOST_BYTES };
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(rows);
     let header = reader.headers().map_err(|e| unreadable(path, e))?.clone();
     let mut index = [0; 4];
@@ -75,18 +75,24 @@ struct Rows<R> {
     stream: R,
     /// Bytes since the last end of a row.
     length: usize,
+    /// Bytes that may still come.
+    left: u64,
 }
 
 impl<R: Read> Read for Rows<R> {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
         let count = self.stream.read(buffer)?;
-        self.length = match buffer[..count].iter().rposition(|&b| b == b'\n') {
+        self.length = match buffer[..count].iter().rposition(|&b| matches!(b, b'\n' | b'\r')) {
             Some(end) => count - end - 1,
             None => self.length + count,
         };
+        let refuse = |reason: String| Err(std::io::Error::new(std::io::ErrorKind::InvalidData, reason));
         if self.length > MOST_ROW {
-            let reason = format!("a row of more than {MOST_ROW} bytes");
-            return Err(std::io::Error::new(std::io::ErrorKind::InvalidData, reason));
+            return refuse(format!("a row of more than {MOST_ROW} bytes"));
+        }
+        match self.left.checked_sub(count as u64) {
+            Some(left) => self.left = left,
+            None => return refuse(format!("more than {MOST_BYTES} bytes: split it")),
         }
         Ok(count)
     }

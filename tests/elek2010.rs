@@ -183,15 +183,18 @@ fn the_manifest_states_what_is_computed() {
 /// alone goes from the zenith to the horizon; one texel of a window stands for it, of a point it is the point.
 #[test]
 fn windows_are_pieces_of_the_whole() {
+    for layer in LAYERS {
+        windows_are_pieces(layer);
+    }
+}
+
+/// Without a layer that the altitude axis is finer in, and with one.
+const LAYERS: [Layer; 2] = [Layer::NONE, Layer { share: 0.5, altitude: 40e3, width: 5e3 }];
+
+fn windows_are_pieces(layer: Layer) {
     let shell = [600e3, 800e3];
     let curve = SunCurve::Rational { shift: 0.05, width: 0.13 };
-    let bends = Bends {
-        altitude_bend: 1.5,
-        altitude_power: 1.0,
-        view_power: 1.5,
-        horizon_power: 2.4,
-        layer: Layer::NONE,
-    };
+    let bends = Bends { altitude_bend: 1.5, altitude_power: 1.0, view_power: 1.5, horizon_power: 2.4, layer };
     let window = Window { altitudes: Some([5e3, 60e3]), suns: Some([-3.0, 40.0]), views: Views::Sky };
     let map = Elek2010::windowed(shell, [5, 7, 9, 1], curve, bends, &window).unwrap();
     let sine = |degrees: f64| libm::sin(degrees.to_radians());
@@ -227,14 +230,14 @@ fn windows_are_pieces_of_the_whole() {
 /// The window of the whole is the whole, to the bit.
 #[test]
 fn a_window_of_all_changes_nothing() {
+    for layer in LAYERS {
+        all_changes_nothing(layer);
+    }
+}
+
+fn all_changes_nothing(layer: Layer) {
     let curve = SunCurve::HalfAngle { centre: 0.7, width: 0.2 };
-    let bends = Bends {
-        altitude_bend: 1.5,
-        altitude_power: 1.0,
-        view_power: 1.5,
-        horizon_power: 2.4,
-        layer: Layer::NONE,
-    };
+    let bends = Bends { altitude_bend: 1.5, altitude_power: 1.0, view_power: 1.5, horizon_power: 2.4, layer };
     let whole = Elek2010::new(600e3, 800e3, [7, 8, 9, 3]).unwrap().with_curves(curve, bends);
     let map = Elek2010::windowed([600e3, 800e3], [7, 8, 9, 3], curve, bends, &Window::WHOLE).unwrap();
     assert_eq!((whole.axes(), whole.spans()), (map.axes(), map.spans()));

@@ -2,6 +2,7 @@
 
 pub mod compact;
 pub(crate) mod describe;
+mod doubts;
 pub mod elek2010;
 pub(crate) mod extinction;
 pub(crate) mod files;

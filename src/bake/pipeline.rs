@@ -1,5 +1,6 @@
 //! The bake from a planet to the bytes of every file.
 
+use super::doubts;
 use super::files::Files;
 use super::palette::Palette;
 use super::settings::{Layout, Settings, Solver};
@@ -31,10 +32,6 @@ pub struct Product {
 const RESIDUAL_WARNING: f64 = 0.01;
 /// Error of the energy balance above which the bake warns.
 const BALANCE_WARNING: f64 = 3e-3;
-/// Error of the tables of a layout on 95 % of views by day above which the bake warns: five times that of the paper's.
-const TABLES_WARNING: f64 = 0.3;
-/// Median error by day of the paper's layout against the preset's own medium above which the bake warns.
-const MEDIUM_WARNING: f64 = 0.25;
 /// What messages call a bake that is in no folder yet.
 const IN_MEMORY: &str = "the bake in memory";
 
@@ -278,42 +275,9 @@ impl<'a> Solved<'a> {
                 out.push(format!("energy balance of the {key}: {:+.2} % of the light", 100.0 * error));
             }
         }
-        out.extend(coarse_tables(quality));
+        out.extend(doubts::tables(quality));
         out
     }
-}
-
-/// Warnings where the tables of a layout are so coarse that they miss the light of their own medium by day.
-fn coarse_tables(quality: &Map<String, Value>) -> Vec<String> {
-    let own = [
-        ("compact", &["compact_against_direct_integration", "day", "rgb"][..]),
-        ("elek2010", &["elek2010_against_its_own_medium", "day"][..]),
-    ];
-    let error = |path: &[&str]| {
-        let found = path[1..].iter().try_fold(quality.get(path[0])?, |at, key| at.get(key))?;
-        found["p95"].as_f64().filter(|e| *e > TABLES_WARNING)
-    };
-    let warning = |(layout, path): (&str, &[&str])| {
-        error(path).map(|e| {
-            let percent = if e < 100.0 { format!("{:.0} %", 100.0 * e) } else { "any measure".into() };
-            let besides = if layout == "elek2010" { ", and layout compact errs less" } else { "" };
-            format!(
-                "layout {layout}: one in twenty views by day is off by more than {percent}; --size takes larger \
-                 tables{besides}"
-            )
-        })
-    };
-    let mut out: Vec<String> = own.into_iter().filter_map(warning).collect();
-    let simplified =
-        quality.get("elek2010_against_the_full_medium").and_then(|q| q["day"]["median"].as_f64());
-    if let Some(error) = simplified.filter(|e| *e > MEDIUM_WARNING) {
-        out.push(format!(
-            "layout elek2010: its isotropic haze is not this planet's: half of the views by day are off by more than \
-             {:.0} %; layout compact holds the medium as it is",
-            100.0 * error
-        ));
-    }
-    out
 }
 
 /// The bake as its readers will see it.

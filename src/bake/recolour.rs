@@ -35,7 +35,8 @@ pub struct Source<'a> {
 }
 
 /// The manifest of the recoloured bake, and path and content of the files that are not the source's: look-ups, which
-/// hold its matrices, and `preview.png`. The matrices are those of a bake, fitted on the same skies, but for the choice of the four wavelengths, which stays.
+/// hold its matrices, and `preview.png`. The matrices are those of a bake, fitted on the same skies, but for the
+/// choice of the four wavelengths, which stays.
 ///
 /// # Errors
 /// `File` for a source that is damaged or not of this tool.

@@ -244,7 +244,7 @@ fn bake_all(
     let attempt = |k: usize, busy: Busy| {
         let planet = planets[k].as_ref().ok()?;
         let settings = of_preset(args, &all[k], &asked[k]);
-        if let Err(error) = affordable(args, &planet.name, needs[k]) {
+        if let Err(error) = affordable(args.memory, &args.out.join(&planet.name), needs[k]) {
             return Some(Err(error));
         }
         if needs[k] > memory && planets.len() > 1 {
@@ -289,13 +289,13 @@ fn default_memory() -> u64 {
 
 /// Refuses a bake that would take more than this machine has left, before it takes anything; who gives it so much by
 /// `--memory` knows better.
-fn affordable(args: &Args, name: &str, need: u64) -> Result<()> {
-    if args.memory.is_some_and(|given| given >= need) {
+fn affordable(memory: Option<u64>, folder: &Path, need: u64) -> Result<()> {
+    if memory.is_some_and(|given| given >= need) {
         return Ok(());
     }
     memory::check(need).map_err(|reason| {
         let mend = "bake smaller tables or fewer wavelengths, or say --memory if that much can be had";
-        Error::machine(args.out.join(name), std::io::Error::other(format!("{reason}: {mend}")))
+        Error::machine(folder, std::io::Error::other(format!("{reason}: {mend}")))
     })
 }
 
@@ -345,7 +345,9 @@ pub fn planned(plan: &Plan, out: &Path, quiet: bool, json: bool) -> Result<()> {
         settings.waters = Waters { list, size: waters.size, orders: waters.orders, underwater: false };
     }
     let need = estimate(&planet, &settings);
-    let result = make(&out.join(&planet.name), &settings, &Progress::new(quiet), &planet, need);
+    let folder = out.join(&planet.name);
+    let result = affordable(None, &folder, need)
+        .and_then(|()| make(&folder, &settings, &Progress::new(quiet), &planet, need));
     let outcomes = vec![Outcome { name: planet.name, result }];
     // One JSON document is one answer: the plan's.
     if !json {

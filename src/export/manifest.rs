@@ -1,7 +1,7 @@
 //! `bake.json`: everything that a reader of a bake's files has to know, and nothing of the machine or the moment.
 
 use crate::error::{Error, Result};
-use crate::input::{self, MOST_JSON};
+use crate::input;
 use crate::spectrum::Adaptation;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -255,6 +255,9 @@ impl Encoding {
     }
 }
 
+/// Bytes of a manifest at most. It holds the preset with every spectrum and phase function resolved, a number a line.
+const MOST_MANIFEST: u64 = 1 << 30;
+
 /// The hash of a resolved preset: BLAKE3 of its compact JSON text, 64 hexadecimal digits.
 pub fn hash_of(resolved: &Value) -> String {
     blake3::hash(resolved.to_string().as_bytes()).to_hex().to_string()
@@ -281,7 +284,7 @@ impl Manifest {
     /// `File` if it is missing, malformed (with line and column), or of a newer version.
     pub fn read(bake: &Path) -> Result<Manifest> {
         let path = path_in(bake)?;
-        let text = input::named_text(&path, MOST_JSON)?;
+        let text = input::named_text(&path, MOST_MANIFEST)?;
         Manifest::parse(&path, &text)
     }
 

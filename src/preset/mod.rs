@@ -83,7 +83,8 @@ pub fn is_water(name_or_path: &str) -> bool {
     if is_shipped(name_or_path) {
         return false;
     }
-    let text = input::text(Path::new(name_or_path), MOST_JSON);
+    // A pipe is read once, for what it is asked for: a planet.
+    let text = input::named_text(Path::new(name_or_path), MOST_JSON);
     let value = text.ok().and_then(|t| serde_json::from_str::<serde_json::Value>(&t).ok());
     value.is_some_and(|v| v.get(read_water::MARK).is_some())
 }

@@ -5,6 +5,9 @@ use crate::medium::PhaseFunction;
 use crate::spectrum::Spectrum;
 use serde::{Deserialize, Serialize};
 
+/// Angles of a tabulated phase function at most: one every hundredth of a degree, and some.
+pub const MOST_ANGLES: usize = 20_000;
+
 /// Which asymmetry a preset states for a Cornette–Shanks function, whose parameter is not its mean cosine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -102,6 +105,9 @@ impl PhaseLaw {
     /// Whether a table is one: a row for each wavelength, a value for each cosine, both rising.
     pub fn check(&self) -> Result<(), String> {
         let PhaseLaw::Tabulated { cosines, wavelengths_nm, rows } = self else { return Ok(()) };
+        if cosines.len() > MOST_ANGLES {
+            return Err(format!("{} cosines: {MOST_ANGLES} are the most", cosines.len()));
+        }
         let rising = |list: &[f64]| list.windows(2).all(|p| p[0] < p[1]);
         if cosines.len() < 2 || cosines[0] != -1.0 || cosines[cosines.len() - 1] != 1.0 || !rising(cosines) {
             return Err("cosines must rise from -1 to 1".into());

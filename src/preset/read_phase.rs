@@ -1,7 +1,7 @@
 //! `phase` of a constituent → [`PhaseLaw`].
 
 use super::bounds::NOT_NEGATIVE;
-use super::phase::{KingFactor, PhaseLaw, Stated};
+use super::phase::{KingFactor, MOST_ANGLES, PhaseLaw, Stated};
 use super::raw::Raw;
 use super::read_coefficient::co2_ppm;
 use super::read_spectrum::{ASYMMETRY, KING_FACTOR, SHARE, spectrum, wavelengths};
@@ -17,9 +17,6 @@ pub const KINDS: [&str; 6] = [
     "double_henyey_greenstein",
     "tabulated",
 ];
-
-/// Angles of a tabulated phase function at most: one every hundredth of a degree, and some.
-const MOST_ANGLES: usize = 20_000;
 
 /// The King factor of air as a formula.
 pub const AIR_KING_FACTOR: &str = "bodhaine1999";

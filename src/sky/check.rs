@@ -95,7 +95,7 @@ fn check_table(table: &Table, atlas: &Atlas) -> Result<(), String> {
             check_shell(ground, top)
                 .map_err(|reason| format!("axes.{}: r_ground, r_top: {reason}", axis.name))?;
         }
-        for name in ["view_power", "horizon_power", "altitude_power", "width"] {
+        for name in ["view_power", "horizon_power", "width"] {
             if let Some(v) = constant(name).filter(|v| !(1e-3..=1e3).contains(v)) {
                 return Err(format!("axes.{}.{name} = {v}: must be between 0.001 and 1000", axis.name));
             }
@@ -103,20 +103,31 @@ fn check_table(table: &Table, atlas: &Atlas) -> Result<(), String> {
         if let Some(v) = constant("altitude_bend").filter(|v| !(-0.99..=1e3).contains(v)) {
             return Err(format!("axes.{}.altitude_bend = {v}: must be between -0.99 and 1000", axis.name));
         }
-        if let Some(v) = constant("layer_share").filter(|v| !(0.0..=0.99).contains(v)) {
-            return Err(format!("axes.{}.layer_share = {v}: must be between 0 and 0.99", axis.name));
-        }
-        if let Some(v) = constant("layer_altitude").filter(|v| !(0.0..=1e9).contains(v)) {
-            return Err(format!("axes.{}.layer_altitude = {v}: must be between 0 and 1e9", axis.name));
-        }
-        if let Some(v) = constant("layer_width").filter(|v| !(1.0..=1e9).contains(v)) {
-            return Err(format!("axes.{}.layer_width = {v}: must be between 1 and 1e9", axis.name));
-        }
+        check_layer(constant).map_err(|reason| format!("axes.{}.{reason}", axis.name))?;
         if let Some(v) = constant("shift").filter(|v| !(-1.0..=1.0).contains(v)) {
             return Err(format!("axes.{}.shift = {v}: must be between -1 and 1", axis.name));
         }
         if let Some(v) = constant("centre").filter(|v| !(0.0..=1.0).contains(v)) {
             return Err(format!("axes.{}.centre = {v}: must be between 0 and 1", axis.name));
+        }
+    }
+    Ok(())
+}
+
+/// A layer lies in its shell, and comes with all that its formula wants.
+fn check_layer(constant: impl Fn(&str) -> Option<f64>) -> Result<(), String> {
+    const NAMES: [&str; 4] = ["layer_share", "layer_altitude", "layer_width", "altitude_power"];
+    let found = NAMES.map(&constant);
+    if found.iter().all(Option::is_none) {
+        return Ok(());
+    }
+    let height = constant("r_top").unwrap_or(0.0) - constant("r_ground").unwrap_or(0.0);
+    let bounds = [(0.0, 0.99), (0.0, height), (1e-6 * height, 10.0 * height), (1.0, 2.0)];
+    for ((name, found), (low, high)) in NAMES.iter().zip(found).zip(bounds) {
+        match found {
+            Some(v) if (low..=high).contains(&v) => {}
+            Some(v) => return Err(format!("{name} = {v}: must be between {low} and {high}")),
+            None => return Err(format!("{name}: missing, beside others of a layer")),
         }
     }
     Ok(())

@@ -160,15 +160,16 @@ impl Elek2010 {
         self.altitude_at(self.spans[0].coordinate(i, self.size[0]))
     }
 
-    /// Altitude half-way, in the axis' coordinate, between texel `i` and the next, m.
-    pub fn altitude_between(&self, i: usize) -> f64 {
-        let ends = [i, i + 1].map(|k| self.spans[0].coordinate(k, self.size[0]));
-        self.altitude_at(0.5 * (ends[0] + ends[1]))
+    /// Altitude at a share, in the axis' coordinate, of the way from texel `i` to the next, m.
+    pub fn altitude_between(&self, i: usize, share: f64) -> f64 {
+        let [low, high] = [i, i + 1].map(|k| self.spans[0].coordinate(k, self.size[0]));
+        self.altitude_at(low + share * (high - low))
     }
 
     /// Altitude of a coordinate, m.
     fn altitude_at(&self, x: f64) -> f64 {
-        if self.bends.layer == Layer::NONE {
+        // 0 and 1 are the ends, to the bit.
+        if self.bends.layer == Layer::NONE || x <= 0.0 || x >= 1.0 {
             return self.altitude_of_share(self.bends.altitude(x));
         }
         // The coordinate rises with the altitude; halving a share of 1 sixty times leaves no digit.
@@ -267,16 +268,29 @@ impl Elek2010 {
     pub fn mu(&self, altitude: f64, j: usize) -> (f64, bool) {
         let half = self.half();
         let (hits_ground, step) = (j < half && self.views == Views::All, j % half);
-        let end = if hits_ground { -1.0 } else { 1.0 };
-        if step == 0 {
-            return (end, hits_ground);
+        (self.mu_along(altitude, step as f64, hits_ground), hits_ground)
+    }
+
+    /// Cosine of the view zenith angle at a share, in the axis' coordinate, of the way from view texel `j` to the next of
+    /// its half, and whether the ray hits the ground.
+    pub fn mu_between(&self, altitude: f64, j: usize, share: f64) -> (f64, bool) {
+        let half = self.half();
+        let (hits_ground, step) = (j < half && self.views == Views::All, j % half);
+        (self.mu_along(altitude, step as f64 + share, hits_ground), hits_ground)
+    }
+
+    /// The same at a place counted in texels of a half.
+    fn mu_along(&self, altitude: f64, step: f64, hits_ground: bool) -> f64 {
+        let last = (self.half() - 1) as f64;
+        if step == 0.0 {
+            return if hits_ground { -1.0 } else { 1.0 };
         }
         let horizon = self.horizon_mu(altitude);
         let (shortest, longest) = self.distances(altitude, hits_ground);
-        let x = self.bends.view(step as f64 / (half - 1) as f64, hits_ground);
+        let x = self.bends.view(step / last, hits_ground);
         let distance = shortest + x * (longest - shortest);
-        if step + 1 == half || distance == 0.0 {
-            return (horizon, hits_ground);
+        if step == last || distance == 0.0 {
+            return horizon;
         }
         let (z1, radius) = (self.horizon_distance(altitude), self.ground_radius + altitude);
         let above_horizon = match hits_ground {
@@ -287,7 +301,7 @@ impl Elek2010 {
                 (longest - distance) * (z2_minus_z1 + distance) / (2.0 * radius * distance)
             }
         };
-        ((horizon + above_horizon).clamp(-1.0, 1.0), hits_ground)
+        (horizon + above_horizon).clamp(-1.0, 1.0)
     }
 
     // ---- sun: W = (1 − e^(−a (mu_s − mu_s_min))) / (1 − e^−3.6), a = 3.6 / (1 − mu_s_min) -----------------

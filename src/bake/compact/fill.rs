@@ -1,6 +1,6 @@
 //! Texels of the scattering tables: light of every ray under every sun, as a mean source.
 
-use super::edges;
+use super::edges::{self, Ray};
 use crate::bake::palette::Palette;
 use crate::lanes::Lanes;
 use crate::table::Elek2010;
@@ -44,8 +44,7 @@ pub fn fill(
             continue;
         }
         let painter = Painter::new(solution, batch, groups).together();
-        let ray = |altitude: f64, view: usize, light: &mut RayLight, out: &mut [[f32; 4]]| {
-            let (mu, hits_ground) = mapping.mu(altitude, view);
+        let ray = |(altitude, (mu, hits_ground)): Ray, light: &mut RayLight, out: &mut [[f32; 4]]| {
             painter.ray(mapping.radii()[0] + altitude, mu, hits_ground, &pairs, wanted, light);
             for group in count - folded..count {
                 fold(light, &batch.optics.phase[groups[group][0]], group, mu as f32, &pairs);
@@ -63,14 +62,12 @@ pub fn fill(
         texels.par_chunks_mut(count * kept).enumerate().for_each_init(
             RayLight::default,
             |light, (n, out)| {
-                ray(mapping.inner_altitude(n / views), n % views, light, out);
+                let altitude = mapping.inner_altitude(n / views);
+                ray((altitude, mapping.mu(altitude, n % views)), light, out);
             },
         );
         if wanted == Wanted::Single {
-            let between = |lower: usize, view: usize, out: &mut [[f32; 4]]| {
-                ray(mapping.altitude_between(lower), view, &mut RayLight::default(), out)
-            };
-            edges::bridge(&mut texels, [altitudes, views, count, kept], &four, between);
+            edges::bridge(&mut texels, mapping, [count, kept], &four, ray);
         }
     }
     (0..count)

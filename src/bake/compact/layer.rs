@@ -3,7 +3,7 @@
 use crate::medium::Medium;
 use crate::table::{Bends, Layer};
 
-/// Vertical optical depth, the mean over wavelengths, up to which axes are left alone.
+/// Vertical optical depth, the median over wavelengths, up to which axes are left alone.
 const THIN: f64 = 4.0;
 /// What a layer takes of the axis, of air without bound.
 const SHARE: f64 = 0.5;
@@ -37,12 +37,16 @@ pub fn bent(bends: Bends, medium: &Medium) -> Bends {
     }
 }
 
-/// Vertical optical depth above an altitude (m), the mean over wavelengths.
+/// Vertical optical depth above an altitude (m), at the wavelength whose depth is the median: one that some band makes
+/// opaque does not decide for the others.
 fn depth_above(medium: &Medium) -> impl Fn(f64) -> f64 {
-    let count = medium.wavelengths_nm.len();
-    let mean =
-        |c: &crate::medium::Constituent| (0..count).map(|w| c.extinction(w)).sum::<f64>() / count as f64;
-    let extinctions: Vec<f64> = medium.constituents.iter().map(mean).collect();
+    let depths = medium.vertical_optical_depth();
+    let mut order: Vec<usize> = (0..depths.len()).collect();
+    order.sort_by(|&a, &b| depths[a].total_cmp(&depths[b]));
+    let extinctions: Vec<f64> = match order.get(order.len() / 2) {
+        Some(&w) => medium.constituents.iter().map(|c| c.extinction(w)).collect(),
+        None => Vec::new(),
+    };
     let height = medium.height();
     move |z| medium.constituents.iter().zip(&extinctions).map(|(c, e)| e * c.density.column(z, height)).sum()
 }
@@ -78,6 +82,15 @@ mod tests {
         let Bends { layer, altitude_power, .. } = of("venus");
         assert!((65e3..75e3).contains(&layer.altitude) && layer.altitude - layer.width > 48e3, "{layer:?}");
         assert!(layer.share > 0.4 && altitude_power > 1.8, "{layer:?}");
+    }
+
+    /// A band that is opaque at one wavelength of three leaves clear air the axis that it has.
+    #[test]
+    fn one_opaque_wavelength_does_not_decide() {
+        let mut medium = preset::load("earth-paper", &[]).unwrap().medium(&[450.0, 550.0, 650.0]);
+        medium.constituents[0].absorption[1] = 0.1;
+        assert!(medium.vertical_optical_depth()[1] > 100.0);
+        assert_eq!(bent(BENDS, &medium), BENDS);
     }
 
     /// No air, no axis of its own; air without bound, one that is a number.

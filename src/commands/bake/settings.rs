@@ -220,7 +220,7 @@ fn water_size(text: &str) -> Option<[usize; 3]> {
         .then_some(size)
 }
 
-/// Texels that a table may have: 256 million floats of four channels are four gigabytes.
+/// Texels that a table may have: 256 million floats, four a texel, are a gigabyte.
 const MOST_TEXELS: usize = 1 << 26;
 
 fn numbers<const N: usize>(text: &str) -> std::result::Result<[usize; N], String> {

@@ -1,6 +1,7 @@
 //! The comment that a look-up file opens with: what to bind and what to call.
 
 use super::{Bound, Language, is_volume};
+use crate::error::Line;
 use crate::export::manifest::Manifest;
 
 const WGSL: &str = "
@@ -41,7 +42,8 @@ pub fn comment(manifest: &Manifest, layout: &str, tables: &[Bound], language: La
 }
 
 fn commented(line: &str) -> String {
-    if line.is_empty() { "//\n".into() } else { format!("// {line}\n") }
+    // A name from a stranger's bake stays in the comment: to some languages more than \n ends a line.
+    if line.is_empty() { "//\n".into() } else { format!("// {}\n", Line(line)) }
 }
 
 /// A line for each table: number, name, texture, file.

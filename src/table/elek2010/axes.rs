@@ -1,6 +1,7 @@
 //! The axes of the mapping in words, for a manifest.
 
 use super::Elek2010;
+use crate::table::layer::Layer;
 use crate::table::window::{Span, Views};
 
 /// Names of the constants that say which part of an axis a table holds: the coordinates of its ends, and, where it is 1,
@@ -72,7 +73,7 @@ impl Elek2010 {
         let layer = self.bends.layer;
         let mut constants = radii.to_vec();
         constants.push(("altitude_bend", self.bends.altitude_bend));
-        let (coordinate, inverse) = if layer.share == 0.0 {
+        let (coordinate, inverse) = if layer == Layer::NONE && self.bends.altitude_power == 1.0 {
             (
                 "U = (1 + altitude_bend) u / (1 + altitude_bend u), u = Z1 / Z2, Z1 = sqrt(r^2 - r_ground^2)",
                 "u = U / (1 + altitude_bend (1 - U)); r = sqrt(r_ground^2 + (u Z2)^2)",
