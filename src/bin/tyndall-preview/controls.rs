@@ -257,6 +257,19 @@ mod tests {
         assert!((c.camera.sun_elevation - NOON).abs() < 1e-6, "stopped");
     }
 
+    /// Each press of G, repeated ones too, turns g by .02 from the .76 it starts at, with Shift down; it stays below 1.
+    #[test]
+    fn g_is_turned_up_and_down() {
+        let mut c = controls();
+        (0..5).for_each(|i| assert_eq!(c.press(KeyCode::KeyG, i > 2), Request::Nothing));
+        assert!((c.g.unwrap() - 0.86).abs() < 1e-9, "{:?}", c.g);
+        (0..20).for_each(|_| assert_eq!(c.press(KeyCode::KeyG, true), Request::Nothing));
+        assert_eq!(c.g, Some(0.98));
+        c.press(KeyCode::ShiftLeft, false);
+        c.press(KeyCode::KeyG, false);
+        assert!((c.g.unwrap() - 0.96).abs() < 1e-9, "{:?}", c.g);
+    }
+
     /// M goes through all three methods and back; a key that repeats switches nothing.
     #[test]
     fn methods_take_turns() {

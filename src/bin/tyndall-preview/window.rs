@@ -229,8 +229,9 @@ impl App {
         let water = self.bake.water.as_ref();
         let water =
             water.map_or(String::new(), |w| format!(", {} {:.1} m deep", w.name, self.controls.depth));
+        let g = view.g.map_or(String::new(), |g| format!(", g {g:.2}"));
         format!(
-            "{} {} {method}{water} | {:.0} m, star {:.1}°, EV {:.1} | {fps:.0}/s | {TITLE_KEYS}",
+            "{} {} {method}{water}{g} | {:.0} m, star {:.1}°, EV {:.1} | {fps:.0}/s | {TITLE_KEYS}",
             self.bake.manifest.preset.name,
             self.bake.layout.name(),
             camera.altitude,
