@@ -119,9 +119,11 @@ targets! {
     spectrum: 200000,
     chart: 2000,
     options: 20000,
+    list: 20000,
     exr: 5000,
     skies: 2000,
     manifest: 1000,
+    package: 40,
     folder: 150,
     recolour: 4,
 }

@@ -7,6 +7,7 @@ pub mod elek2010;
 pub(crate) mod extinction;
 pub(crate) mod files;
 pub mod inputs;
+mod lights;
 mod literal;
 pub mod memory;
 pub mod palette;
@@ -22,4 +23,5 @@ pub mod three_atmosphere;
 mod vectors;
 pub mod water;
 
-pub use pipeline::{Product, bake};
+pub use lights::Lights;
+pub use pipeline::{Product, bake, bake_in};

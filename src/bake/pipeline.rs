@@ -2,6 +2,7 @@
 
 use super::doubts;
 use super::files::Files;
+use super::lights::Lights;
 use super::palette::Palette;
 use super::settings::{Layout, Settings, Solver};
 use super::tables::Baked;
@@ -20,6 +21,7 @@ use crate::spectrum::RANGE;
 use crate::transport::solve::{Orders, Resolution, Solution, worst};
 use serde_json::{Map, Value, json};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Every file of a bake, `bake.json` among them, and what is to be told.
 pub struct Product {
@@ -38,7 +40,17 @@ const IN_MEMORY: &str = "the bake in memory";
 /// Bakes a planet. `stage` is called with the name of each stage as it begins. Errors: a medium without meaning,
 /// wavelengths or sizes that do not fit together, tables that cannot be encoded.
 pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -> Result<Product> {
-    let solved = Solved::new(planet, settings, stage)?;
+    bake_in(&Lights::default(), planet, settings, stage)
+}
+
+/// The same, with the light of bakes before where it is the same. Errors: as [`bake`].
+pub fn bake_in(
+    lights: &Lights,
+    planet: &Planet,
+    settings: &Settings,
+    stage: &mut dyn FnMut(&str),
+) -> Result<Product> {
+    let solved = Solved::new(lights, planet, settings, stage)?;
     stage("colours");
     let sample = solved.sample();
     let palette = solved.palette(&sample)?;
@@ -102,8 +114,8 @@ struct Solved<'a> {
     settings: &'a Settings,
     full: Medium,
     paper: Medium,
-    full_light: Option<Solution>,
-    paper_light: Option<Solution>,
+    full_light: Option<Arc<Solution>>,
+    paper_light: Option<Arc<Solution>>,
 }
 
 /// Tables of all layouts, and what was odd about them.
@@ -116,7 +128,12 @@ struct Filled {
 }
 
 impl<'a> Solved<'a> {
-    fn new(planet: &'a Planet, settings: &'a Settings, stage: &mut dyn FnMut(&str)) -> Result<Self> {
+    fn new(
+        lights: &Lights,
+        planet: &'a Planet,
+        settings: &'a Settings,
+        stage: &mut dyn FnMut(&str),
+    ) -> Result<Self> {
         stage("media");
         let full = planet.medium(&settings.wavelengths_nm);
         full.check().map_err(|reason| Error::Argument(format!("{}: {reason}", planet.name)))?;
@@ -127,18 +144,18 @@ impl<'a> Solved<'a> {
         let wants = |layout| settings.layouts.contains(&layout);
         stage("solve");
         let full_light = (wants(Layout::Compact) || wants(Layout::ThreeAtmosphere))
-            .then(|| Solution::new(&full, &Resolution::TABLES, settings.orders));
+            .then(|| lights.of(&full, &Resolution::TABLES, settings.orders));
         stage("solve paper's medium");
         let paper_light = (wants(Layout::Elek2010) || full_light.is_none())
-            .then(|| Solution::new(&paper, &Resolution::PAPER, settings.orders));
+            .then(|| lights.of(&paper, &Resolution::PAPER, settings.orders));
         Ok(Solved { planet, settings, full, paper, full_light, paper_light })
     }
 
     /// The medium nearest to the preset's that was solved, and its light.
     fn best(&self) -> (&Medium, &Solution) {
         match (&self.full_light, &self.paper_light) {
-            (Some(light), _) => (&self.full, light),
-            (None, Some(light)) => (&self.paper, light),
+            (Some(light), _) => (&self.full, light.as_ref()),
+            (None, Some(light)) => (&self.paper, light.as_ref()),
             (None, None) => unreachable!("one of the two was solved"),
         }
     }

@@ -20,6 +20,7 @@ use crate::spectrum::{ColourSpace, Reconstruction, Spectrum, grid, multiply};
 use crate::transport::solve::{Orders, Resolution, Solution, lowest_sun};
 use crate::transport::view::View;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// A planet and settings that are hard on a method.
 pub struct Case {
@@ -142,7 +143,14 @@ fn henyey_greenstein(g: f64) -> PhaseLaw {
 /// One of each family, small.
 pub fn methods(settings: &Settings) -> Vec<Box<dyn Method>> {
     let baked = |family, layout, settings: Settings, storage| -> Box<dyn Method> {
-        Box::new(BakedTables { family, setting: String::new(), layout, settings, storage })
+        Box::new(BakedTables {
+            family,
+            setting: String::new(),
+            layout,
+            settings,
+            storage,
+            lights: Arc::default(),
+        })
     };
     let literal = Settings {
         elek2010_size: [8, 32, 12, 4],

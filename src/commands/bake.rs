@@ -3,7 +3,7 @@
 mod depfile;
 mod fresh;
 mod jobs;
-mod list;
+pub mod list;
 mod progress;
 mod settings;
 mod summary;

@@ -2,7 +2,7 @@
 
 use super::{Family, Method, Prepared, PreparedSky};
 use crate::bake::settings::{Layout, Settings};
-use crate::bake::{Product, bake};
+use crate::bake::{Lights, Product, bake_in};
 use crate::clock::cpu_time;
 use crate::error::{Error, Result};
 use crate::export::manifest::{Encoding, EncodingKind, Manifest, Table};
@@ -13,6 +13,7 @@ use crate::sky::{Component, Sky};
 use crate::transport::view::View;
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// A layout with settings.
@@ -22,6 +23,8 @@ pub struct BakedTables {
     pub layout: Layout,
     pub settings: Settings,
     pub storage: Storage,
+    /// Shared with others that may want the same light.
+    pub lights: Arc<Lights>,
 }
 
 /// How the samples of tables over four axes are stored.
@@ -39,6 +42,8 @@ pub enum Storage {
 
 /// Stages of a bake that no sky waits for.
 const APART: [&str; 3] = ["encode", "report", "picture"];
+/// How the names of stages begin whose light other methods may share: each pays for it as if it were alone.
+const SHARED: &str = "solve";
 
 impl Method for BakedTables {
     fn family(&self) -> Family {
@@ -50,33 +55,29 @@ impl Method for BakedTables {
     }
 
     fn prepare(&self, planet: &Planet) -> Result<Prepared> {
-        let mut watch = Watch::new(self.family == Family::Algorithm1);
+        let mut watch = Watch::default();
         let settings = Settings { layouts: vec![self.layout], ..self.settings.clone() };
-        let product = bake(planet, &settings, &mut |stage| watch.stage(stage))?;
-        let cpu = watch.own();
+        let product = bake_in(&self.lights, planet, &settings, &mut |stage| watch.stage(stage))?;
+        // To the literal algorithm the solver's light serves for colours alone.
+        let solver = if self.family == Family::Algorithm1 { Duration::ZERO } else { self.lights.cpu() };
+        let cpu = watch.own() + solver;
         let warnings = product.manifest.warnings.clone();
         let tables = Tables::open(product, self.layout.name(), self.storage)?;
         Ok(Prepared { sky: Box::new(tables), cpu, warnings })
     }
 }
 
-/// Processor time of the stages that belong to the method.
+/// Processor time of the stages that belong to the method, but for its light.
+#[derive(Default)]
 struct Watch {
-    /// The solver's light serves for colours alone.
-    solver_apart: bool,
     current: Option<(bool, Duration)>,
     own: Duration,
 }
 
 impl Watch {
-    fn new(solver_apart: bool) -> Self {
-        Watch { solver_apart, current: None, own: Duration::ZERO }
-    }
-
     fn stage(&mut self, name: &str) {
         self.close();
-        let solver = self.solver_apart && name.starts_with("solve");
-        self.current = Some((!APART.contains(&name) && !solver, cpu_time()));
+        self.current = Some((!APART.contains(&name) && !name.starts_with(SHARED), cpu_time()));
     }
 
     fn close(&mut self) {

@@ -1,20 +1,21 @@
 //! The methods and settings that a chart compares.
 
 use super::{BakedTables, Elek2009, Family, Method, Nishita, OneilMarch, Schafhitzel, Storage};
+use crate::bake::Lights;
 use crate::bake::compact::Sizes;
 use crate::bake::settings::{Layout, Settings, Solver};
 use crate::methods::literal::Gather;
 use crate::spectrum::grid;
 use crate::transport::solve::Orders;
+use std::sync::Arc;
 
-/// All methods of a chart, in its order.
+/// All methods of a chart, in its order: those that share their light one after another.
 pub fn all() -> Vec<Box<dyn Method>> {
     let mut out: Vec<Box<dyn Method>> = Vec::new();
     out.extend(older());
-    out.extend(algorithm_1().into_iter().map(boxed));
-    out.extend(bruneton().into_iter().map(boxed));
-    out.extend(elek2010().into_iter().map(boxed));
-    out.extend(compact().into_iter().map(boxed));
+    let lights = Arc::default();
+    let baked = [algorithm_1(&lights), bruneton(&lights), elek2010(&lights), compact(&lights)];
+    out.extend(baked.into_iter().flatten().map(boxed));
     out
 }
 
@@ -43,7 +44,7 @@ fn size_of(size: [usize; 4]) -> String {
     size.map(|n| n.to_string()).join("×")
 }
 
-fn algorithm_1() -> Vec<BakedTables> {
+fn algorithm_1(lights: &Arc<Lights>) -> Vec<BakedTables> {
     let of = |size: [usize; 4], samples, orders, gather, about: &str| BakedTables {
         family: Family::Algorithm1,
         setting: format!("{}, {samples} samples, {orders} orders, {about}", size_of(size)),
@@ -55,6 +56,7 @@ fn algorithm_1() -> Vec<BakedTables> {
             ..Settings::default()
         },
         storage: Storage::AsBaked,
+        lights: lights.clone(),
     };
     vec![
         of([32, 128, 32, 8], 30, 6, Gather::PerPoint, "4D gather table"),
@@ -67,13 +69,14 @@ fn algorithm_1() -> Vec<BakedTables> {
     ]
 }
 
-fn bruneton() -> Vec<BakedTables> {
+fn bruneton(lights: &Arc<Lights>) -> Vec<BakedTables> {
     let of = |setting: &str, storage| BakedTables {
         family: Family::Bruneton2017,
         setting: setting.into(),
         layout: Layout::ThreeAtmosphere,
         settings: Settings::default(),
         storage,
+        lights: lights.clone(),
     };
     vec![
         of("256×128×32, RGB and red of Mie", Storage::RedOfMie),
@@ -81,7 +84,7 @@ fn bruneton() -> Vec<BakedTables> {
     ]
 }
 
-fn elek2010() -> Vec<BakedTables> {
+fn elek2010(lights: &Arc<Lights>) -> Vec<BakedTables> {
     let of = |size: [usize; 4], orders: Orders, wavelengths: usize, about: &str| BakedTables {
         family: Family::Elek2010,
         setting: format!("{}{about}", size_of(size)),
@@ -93,6 +96,7 @@ fn elek2010() -> Vec<BakedTables> {
             ..Settings::default()
         },
         storage: Storage::AsBaked,
+        lights: lights.clone(),
     };
     let all = Settings::default().orders;
     vec![
@@ -110,7 +114,7 @@ fn compact_settings(single: [usize; 4], multiple: [usize; 4]) -> Settings {
     Settings { compact: Sizes { single, multiple, ..Sizes::default() }.into(), ..Settings::default() }
 }
 
-fn compact() -> Vec<BakedTables> {
+fn compact(lights: &Arc<Lights>) -> Vec<BakedTables> {
     let of = |settings: Settings, about: &str, storage| BakedTables {
         family: Family::Compact,
         setting: format!(
@@ -121,6 +125,7 @@ fn compact() -> Vec<BakedTables> {
         layout: Layout::Compact,
         settings,
         storage,
+        lights: lights.clone(),
     };
     let sized = |single, multiple| of(compact_settings(single, multiple), "", Storage::AsBaked);
     let changed = |change: &dyn Fn(&mut Settings), about: &str| {
@@ -136,13 +141,13 @@ fn compact() -> Vec<BakedTables> {
         sized([16, 32, 32, 6], [12, 32, 32, 8]),
         sized(Sizes::default().single, Sizes::default().multiple),
         sized([40, 64, 56, 10], [28, 64, 56, 14]),
+        of(Settings::default(), ", linear halves", Storage::LinearHalves),
+        of(Settings::default(), ", 8 bits", Storage::EightBits),
         changed(&|s| s.orders = Orders::First(1), ", 1 order"),
         changed(&|s| s.orders = Orders::First(2), ", 2 orders"),
         changed(&|s| s.orders = Orders::First(4), ", 4 orders"),
         changed(&|s| s.wavelengths_nm = vec![440.0, 510.0, 570.0, 635.0], ", 4 wavelengths"),
         changed(&|s| s.wavelengths_nm = grid(8), ", 8 wavelengths"),
         changed(&|s| s.wavelengths_nm = grid(31), ", 31 wavelengths"),
-        of(Settings::default(), ", linear halves", Storage::LinearHalves),
-        of(Settings::default(), ", 8 bits", Storage::EightBits),
     ]
 }

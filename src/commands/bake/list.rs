@@ -36,10 +36,16 @@ pub fn asked(args: &Args) -> Result<Vec<String>> {
     Ok(all.into_iter().skip(number - 1).step_by(of).collect())
 }
 
-/// A preset a line; `#` begins a comment. A path is from the folder of the list where such a file is there, or else
-/// from the current folder, as those of spectra are.
 fn read(file: &Path) -> Result<Vec<String>> {
-    let text = input::text(file, MOST_CSV)?;
+    parse(file, &input::text(file, MOST_CSV)?)
+}
+
+/// The presets that the text of a list names, a line each; `#` begins a comment. A path is from the folder of the list
+/// where such a file is there, or else from the current folder, as those of spectra are.
+///
+/// # Errors
+/// `File` for a list that names nothing.
+pub fn parse(file: &Path, text: &str) -> Result<Vec<String>> {
     let lines = text.lines().map(|line| line.split('#').next().unwrap_or_default().trim());
     let folder = file.parent().unwrap_or(Path::new(""));
     let found: Vec<String> = lines

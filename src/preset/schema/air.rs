@@ -8,6 +8,7 @@ use super::super::read_spectrum::SHARE;
 use super::coefficient::{self, Where};
 use super::parts::*;
 use super::phase;
+use crate::medium::MOST_NODES;
 use serde_json::{Map, Value, json};
 
 pub fn define(defs: &mut Map<String, Value>) {
@@ -50,12 +51,12 @@ fn profile() -> Value {
     let nodes = |kind: &str, bounds, about: &str| {
         let altitudes = |unit: &str, factor: f64| {
             let bounds = Bounds::within(0.0, MOST_METRES / factor, "0 or more");
-            numbers(bounds, 2, &format!("Altitudes in {unit}, rising"))
+            at_most(MOST_NODES, numbers(bounds, 2, &format!("Altitudes in {unit}, rising")))
         };
         Object::new(about)
             .kind(kind)
             .one_of(&[("altitudes_km", altitudes("km", 1e3)), ("altitudes_m", altitudes("m", 1.0))])
-            .must("densities", numbers(bounds, 2, "Relative densities"))
+            .must("densities", at_most(MOST_NODES, numbers(bounds, 2, "Relative densities")))
             .build()
     };
     let exponential = Object::new("exp(−altitude / scale height)")

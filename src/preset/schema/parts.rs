@@ -111,6 +111,12 @@ pub fn numbers(bounds: Bounds, least: usize, about: &str) -> Value {
     json!({ "description": about, "type": "array", "minItems": least, "items": number(bounds, about) })
 }
 
+/// The same list of so many at most.
+pub fn at_most(most: usize, mut list: Value) -> Value {
+    list["maxItems"] = json!(most);
+    list
+}
+
 /// Wavelengths of a table.
 pub fn wavelengths() -> Value {
     let bounds = Bounds::above(0.0, "greater than 0");

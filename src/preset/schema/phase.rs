@@ -1,6 +1,7 @@
 //! The schema of phase functions.
 
 use super::super::bounds::{Bounds, NOT_NEGATIVE};
+use super::super::phase::MOST_ANGLES;
 use super::super::read_coefficient::CO2_PPM;
 use super::super::read_phase::{AIR_KING_FACTOR, KINDS};
 use super::super::read_spectrum::{ASYMMETRY, KING_FACTOR, SHARE};
@@ -63,7 +64,10 @@ fn table_of(kind: &str) -> Value {
         .kind(kind)
         .must(
             "angles_deg",
-            numbers(angle, 2, "Scattering angles in degrees, rising from 0 (straight on) to 180"),
+            at_most(
+                MOST_ANGLES,
+                numbers(angle, 2, "Scattering angles in degrees, rising from 0 (straight on) to 180"),
+            ),
         )
         .may("wavelengths_nm", wavelengths())
         .must("values", json!({ "description": "A value for each angle; with wavelengths, a list for each" }))

@@ -174,7 +174,8 @@ pub fn manifest(bytes: &[u8]) {
     }
 }
 
-fn ask(sky: &Sky) {
+/// Asks a sky for everything that can be asked.
+pub fn ask(sky: &Sky) {
     for (altitude, mu, mu_s) in [(0.0, 0.5, 0.2), (1e4, -0.3, -0.1), (1e9, -1.0, 1.0)] {
         let point = Point { altitude, mu, mu_s, azimuth_deg: 30.0 };
         sky.radiance(&point, Component::Total, AerosolPhase::Preset);

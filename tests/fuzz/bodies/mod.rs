@@ -4,6 +4,7 @@
 mod bakes;
 mod edits;
 mod options;
+mod package;
 mod presets;
 mod solver;
 mod tables;
@@ -14,7 +15,7 @@ use std::path::Path;
 pub type Body = fn(&[u8]);
 
 /// Name and function of every kind of input.
-pub const ALL: [(&str, Body); 15] = [
+pub const ALL: [(&str, Body); 17] = [
     ("planet", presets::planet),
     ("water", presets::water),
     ("scene", presets::scene),
@@ -25,9 +26,11 @@ pub const ALL: [(&str, Body); 15] = [
     ("spectrum", tables::spectrum),
     ("chart", tables::chart),
     ("options", options::bake),
+    ("list", options::planets),
     ("exr", bakes::exr),
     ("skies", bakes::skies),
     ("manifest", bakes::manifest),
+    ("package", package::tables),
     ("folder", bakes::folder),
     ("recolour", bakes::recoloured),
 ];

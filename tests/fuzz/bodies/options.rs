@@ -1,10 +1,11 @@
-//! Options of `tyndall bake`, a line each: refused by the parser or by the command, or settings whose memory can be told.
+//! What `tyndall bake` is asked: options, a line each, refused by the parser or by the command, or settings whose memory
+//! can be told; and lists of planets.
 
-use super::{good, refused};
+use super::{file, good, refused};
 use clap::{Args as _, Command, FromArgMatches};
 use std::sync::OnceLock;
 use tyndall::bake::memory::estimate;
-use tyndall::commands::bake::{Args, settings_of};
+use tyndall::commands::bake::{Args, list, settings_of};
 use tyndall::preset::{self, Planet};
 
 pub fn bake(bytes: &[u8]) {
@@ -23,6 +24,20 @@ pub fn bake(bytes: &[u8]) {
         Ok(settings) => {
             assert!(settings.wavelengths_nm.iter().copied().all(good) && settings.json().is_object());
             assert!(estimate(planet, &settings) > 0);
+        }
+    }
+}
+
+/// A list names presets, whose files may be anything: each is refused in its turn, or read.
+pub fn planets(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    match list::parse(file(), text) {
+        Err(error) => refused(&error),
+        Ok(names) => {
+            assert!(names.iter().all(|n| !n.is_empty() && n.trim() == n && !n.contains(['#', '\n'])));
+            names.iter().take(4).for_each(|name| {
+                let _ = preset::load(name, &[]).map_err(|error| refused(&error));
+            });
         }
     }
 }
