@@ -14,11 +14,12 @@ def apt(*packages):
     if not shutil.which("apt-get"):
         return "no apt-get"
     sudo = ["sudo", "-n"] if shutil.which("sudo") else []
-    install = [*sudo, "apt-get", "install", "-y", "--no-install-recommends", *packages]
+    apt_get = [*sudo, "apt-get", "-o", "DPkg::Lock::Timeout=300", "-o", "Acquire::Retries=5"]
+    install = [*apt_get, "install", "-y", "--no-install-recommends", *packages]
     done = subprocess.run(install, capture_output=True, text=True)
     if done.returncode != 0:
         # The lists of a new machine are old, or not there.
-        subprocess.run([*sudo, "apt-get", "update"], capture_output=True)
+        subprocess.run([*apt_get, "update"], capture_output=True)
         done = subprocess.run(install, capture_output=True, text=True)
     return None if done.returncode == 0 else (done.stderr.strip().splitlines() or ["no reason given"])[-1]
 
@@ -37,5 +38,6 @@ def three():
     found = home / "node_modules/three/package.json"
     if not (found.exists() and json.loads(found.read_text())["version"] == THREE.split("@")[1]):
         home.mkdir(parents=True, exist_ok=True)
-        subprocess.run(["npm", "install", "--silent", "--no-save", "--prefix", home, THREE], check=True)
+        patience = ["--fetch-retries", "5", "--fetch-timeout", "300000"]
+        subprocess.run(["npm", "install", "--silent", "--no-save", *patience, "--prefix", home, THREE], check=True)
     return home

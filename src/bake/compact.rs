@@ -80,12 +80,8 @@ pub fn mapping(medium: &Medium, kind: Kind, size: [usize; 4], window: &Window) -
         Kind::Multiple => (MULTIPLE_SUN, MULTIPLE_BENDS),
         Kind::Depth => (MULTIPLE_SUN, DEPTH_BENDS),
     };
-    let bends = layer::bent(bends, medium);
-    let bends = match window.altitudes {
-        None => layer::with_texel_at_edge(bends, medium, size[0]),
-        Some(_) => bends,
-    };
     let window = if kind == Kind::Depth { window.of_depth() } else { *window };
+    let bends = layer::with_texel_at_edge(layer::bent(bends, medium), medium, size[0], &window);
     Elek2010::windowed(radii, size, sun, bends, &window)
 }
 

@@ -3,7 +3,7 @@
 use crate::clock::cpu_time;
 use crate::medium::Medium;
 use crate::transport::solve::{Orders, Resolution, Solution};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 /// Solutions of the bakes before, the last [`MOST`].
@@ -12,11 +12,18 @@ pub struct Lights {
     kept: Mutex<Vec<Kept>>,
 }
 
+#[derive(Clone)]
 struct Kept {
     /// Medium, resolution and orders, as text.
     made_of: String,
-    light: Arc<Solution>,
-    cpu: Duration,
+    solved: Solved,
+}
+
+/// A solution, and the processor time, all threads, that it took: now, or in the bake before that it comes from.
+#[derive(Clone)]
+pub struct Solved {
+    pub light: Arc<Solution>,
+    pub cpu: Duration,
 }
 
 /// Of a planet with many wavelengths each has some hundreds of megabytes.
@@ -24,26 +31,34 @@ const MOST: usize = 2;
 
 impl Lights {
     /// The light in a medium: that of a bake before, or solved now.
-    pub(super) fn of(&self, medium: &Medium, resolution: &Resolution, orders: Orders) -> Arc<Solution> {
+    pub(super) fn of(&self, medium: &Medium, resolution: &Resolution, orders: Orders) -> Solved {
         // Numbers are written so that no two are alike.
         let made_of = format!("{medium:?} {resolution:?} {orders:?}");
-        let mut kept = self.kept.lock().expect("no holder has panicked");
-        let found = kept.iter().position(|k| k.made_of == made_of).map(|at| kept.remove(at));
-        let last = found.unwrap_or_else(|| {
-            let surplus = (kept.len() + 1).saturating_sub(MOST);
-            kept.drain(..surplus);
+        let found = self.take(&made_of);
+        // Nothing is locked meanwhile: threads that wait may be wanted by the solver.
+        let kept = found.unwrap_or_else(|| {
             let start = cpu_time();
             let light = Arc::new(Solution::new(medium, resolution, orders));
-            Kept { made_of, light, cpu: cpu_time().saturating_sub(start) }
+            Kept { made_of, solved: Solved { light, cpu: cpu_time().saturating_sub(start) } }
         });
-        let light = last.light.clone();
-        kept.push(last);
-        light
+        let solved = kept.solved.clone();
+        self.lock().push(kept);
+        solved
     }
 
-    /// Processor time, all threads, that the light took that was asked for last: now, or when it was solved.
-    pub fn cpu(&self) -> Duration {
-        self.kept.lock().expect("no holder has panicked").last().map_or(Duration::ZERO, |k| k.cpu)
+    /// What is kept under a name, taken out; where there is nothing, room is made for it.
+    fn take(&self, made_of: &str) -> Option<Kept> {
+        let mut kept = self.lock();
+        let found = kept.iter().position(|k| k.made_of == made_of).map(|at| kept.remove(at));
+        if found.is_none() {
+            let surplus = (kept.len() + 1).saturating_sub(MOST);
+            kept.drain(..surplus);
+        }
+        found
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Vec<Kept>> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -61,13 +76,16 @@ mod tests {
         let small = Resolution { sun_nodes: 8, zeniths: 4, sunlight_nodes: 16, ..Resolution::PAPER };
         let finer = Resolution { sun_nodes: 9, ..small };
         let lights = Lights::default();
-        let first = lights.of(&one, &small, Orders::First(1));
-        assert!(Arc::ptr_eq(&first, &lights.of(&one, &small, Orders::First(1))));
-        assert!(!Arc::ptr_eq(&first, &lights.of(&one, &small, Orders::First(2))));
-        assert!(Arc::ptr_eq(&first, &lights.of(&one, &small, Orders::First(1))));
-        let second = lights.of(&other, &small, Orders::First(1));
+        let solve = |medium: &Medium, resolution: &Resolution, orders: usize| {
+            lights.of(medium, resolution, Orders::First(orders)).light
+        };
+        let first = solve(&one, &small, 1);
+        assert!(Arc::ptr_eq(&first, &solve(&one, &small, 1)));
+        assert!(!Arc::ptr_eq(&first, &solve(&one, &small, 2)));
+        assert!(Arc::ptr_eq(&first, &solve(&one, &small, 1)));
+        let second = solve(&other, &small, 1);
         assert!(!Arc::ptr_eq(&first, &second));
-        assert!(!Arc::ptr_eq(&first, &lights.of(&one, &finer, Orders::First(1))));
-        assert!(!Arc::ptr_eq(&first, &lights.of(&one, &small, Orders::First(1))), "two are kept");
+        assert!(!Arc::ptr_eq(&first, &solve(&one, &finer, 1)));
+        assert!(!Arc::ptr_eq(&first, &solve(&one, &small, 1)), "two are kept");
     }
 }

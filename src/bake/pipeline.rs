@@ -22,12 +22,15 @@ use crate::transport::solve::{Orders, Resolution, Solution, worst};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Every file of a bake, `bake.json` among them, and what is to be told.
 pub struct Product {
     /// Path inside the bake, and content.
     pub files: Vec<(String, Vec<u8>)>,
     pub manifest: Manifest,
+    /// Processor time, all threads, that its light took to solve: now, or in a bake before.
+    pub light_cpu: Duration,
 }
 
 /// Residual above which a chosen number of orders is called too small.
@@ -105,7 +108,7 @@ pub fn bake_in(
     let text = manifest.to_json()?;
     let mut out = files.into_bytes();
     out.push(("bake.json".into(), text.into_bytes()));
-    Ok(Product { files: out, manifest })
+    Ok(Product { files: out, manifest, light_cpu: solved.light_cpu })
 }
 
 /// The planet's media and the light in those that the layouts need: at least one of the two.
@@ -116,6 +119,7 @@ struct Solved<'a> {
     paper: Medium,
     full_light: Option<Arc<Solution>>,
     paper_light: Option<Arc<Solution>>,
+    light_cpu: Duration,
 }
 
 /// Tables of all layouts, and what was odd about them.
@@ -148,7 +152,9 @@ impl<'a> Solved<'a> {
         stage("solve paper's medium");
         let paper_light = (wants(Layout::Elek2010) || full_light.is_none())
             .then(|| lights.of(&paper, &Resolution::PAPER, settings.orders));
-        Ok(Solved { planet, settings, full, paper, full_light, paper_light })
+        let light_cpu = full_light.iter().chain(&paper_light).map(|l| l.cpu).sum();
+        let [full_light, paper_light] = [full_light, paper_light].map(|l| l.map(|l| l.light));
+        Ok(Solved { planet, settings, full, paper, full_light, paper_light, light_cpu })
     }
 
     /// The medium nearest to the preset's that was solved, and its light.

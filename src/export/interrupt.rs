@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use std::fs;
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -35,6 +35,14 @@ fn stop() {
 
 fn lock() -> MutexGuard<'static, Vec<PathBuf>> {
     LIVE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Makes a temporary folder and registers it: the process is not stopped between the two.
+pub(super) fn create_dir(folder: &Path) -> io::Result<()> {
+    let mut live = lock();
+    fs::create_dir(folder)?;
+    live.push(folder.to_path_buf());
+    Ok(())
 }
 
 pub(super) fn register(folder: &Path) {

@@ -32,16 +32,16 @@ impl Staging {
         check_replaceable(&target)?;
         for _ in 0..100 {
             let temp = beside(&target, "tmp");
-            match fs::create_dir(&temp) {
+            match interrupt::create_dir(&temp) {
                 Err(e) if e.kind() == io::ErrorKind::AlreadyExists => continue,
                 made => made.map_err(|e| Error::machine(&target, e))?,
             }
             let lock = File::open(&temp).ok().filter(|folder| folder.lock().is_ok());
             // Another bake may have swept the folder in the moment before it was locked.
             if temp.is_dir() {
-                interrupt::register(&temp);
                 return Ok(Staging { target, temp, _lock: lock });
             }
+            interrupt::discard(&temp);
         }
         Err(Error::machine(target, io::Error::other("no free name for a temporary folder beside it")))
     }

@@ -59,7 +59,7 @@ impl Method for BakedTables {
         let settings = Settings { layouts: vec![self.layout], ..self.settings.clone() };
         let product = bake_in(&self.lights, planet, &settings, &mut |stage| watch.stage(stage))?;
         // To the literal algorithm the solver's light serves for colours alone.
-        let solver = if self.family == Family::Algorithm1 { Duration::ZERO } else { self.lights.cpu() };
+        let solver = if self.family == Family::Algorithm1 { Duration::ZERO } else { product.light_cpu };
         let cpu = watch.own() + solver;
         let warnings = product.manifest.warnings.clone();
         let tables = Tables::open(product, self.layout.name(), self.storage)?;

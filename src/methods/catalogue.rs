@@ -14,7 +14,7 @@ pub fn all() -> Vec<Box<dyn Method>> {
     let mut out: Vec<Box<dyn Method>> = Vec::new();
     out.extend(older());
     let lights = Arc::default();
-    let baked = [algorithm_1(&lights), bruneton(&lights), elek2010(&lights), compact(&lights)];
+    let baked = [algorithm_1(&lights), elek2010(&lights), bruneton(&lights), compact(&lights)];
     out.extend(baked.into_iter().flatten().map(boxed));
     out
 }

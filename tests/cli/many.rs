@@ -182,7 +182,7 @@ fn stopped(mut command: Command, out: &Path, begun: &[&str]) -> Output {
         assert!(start.elapsed() < Duration::from_secs(60), "the bakes do not begin: {:?}", names(out));
         std::thread::sleep(Duration::from_millis(5));
     }
-    std::thread::sleep(Duration::from_millis(100));
+    std::thread::sleep(Duration::from_millis(1000));
     assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
     child.wait_with_output().unwrap()
 }

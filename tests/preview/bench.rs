@@ -29,13 +29,14 @@ fn times_memory_and_ratios_are_told() {
     let textures = after(text, "the bake's textures are ");
     let volumes = 8e-6 * f64::from(9 * 20 * 18 * 5 + 2 * 10 * 24 * 20 * 6);
     assert!(textures > volumes && textures < volumes + 1.0, "{textures} MB, {volumes} of volumes");
-    let mut medians = Vec::new();
+    let (mut mins, mut medians) = (Vec::new(), Vec::new());
     let lines: Vec<&str> = text.lines().collect();
     for (line, name) in lines[2..5].iter().zip(["table ", "march ", "march "]) {
         assert!(line.starts_with(name), "{text}");
         let [min, median, max, memory] = row(line);
         assert!(0.0 < min && min <= median && median <= max, "{text}");
         assert!(memory > textures && memory < textures + 10.0, "{text}");
+        mins.push(min);
         medians.push(median);
     }
     assert!(lines[4].contains(", 2D table"), "{text}");
@@ -46,7 +47,8 @@ fn times_memory_and_ratios_are_told() {
         (after(text, "march over march with 2D table: ") - medians[1] / medians[2]).abs() < 0.06,
         "{text}"
     );
-    assert!(medians[1] > medians[0] && medians[1] > medians[2], "{text}");
+    // The quickest frames: what else the machine does only makes frames longer.
+    assert!(mins[1] > mins[0] && mins[1] > mins[2], "{text}");
 }
 
 /// One method alone where one is asked for, and 200 frames where nothing is said; the paper's layout cannot march.

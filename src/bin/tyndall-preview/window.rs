@@ -129,6 +129,8 @@ impl App {
 
     /// Another bake or layout; what cannot be read leaves the one that is shown, with a line on stderr.
     fn load(&mut self, folder: &Path, layout: Option<Layout>) {
+        // What is written from here on is loaded again.
+        let seen = written(folder);
         // The water of before, where the new bake has it too.
         let water = self.bake.water.as_ref().map(|w| w.name.clone());
         let opened = Bake::open(folder, layout).and_then(|bake| {
@@ -136,7 +138,10 @@ impl App {
             bake.with_water(kept.as_deref())
         });
         self.show(opened);
-        self.written = written(folder);
+        // A folder that was refused is not watched.
+        if self.bake.folder == folder {
+            self.written = seen;
+        }
     }
 
     fn show(&mut self, opened: Result<Bake>) {
@@ -317,9 +322,11 @@ impl App {
                     return self.rebuild();
                 }
             }
-            WindowEvent::KeyboardInput { event, .. } => {
+            WindowEvent::KeyboardInput { event, is_synthetic, .. } => {
                 if let PhysicalKey::Code(key) = event.physical_key {
                     match event.state {
+                        // Keys that are down as the window gets the focus; on X11 the press itself may come after.
+                        ElementState::Pressed if is_synthetic => {}
                         ElementState::Released => self.controls.release(key),
                         ElementState::Pressed => {
                             let request = self.controls.press(key, event.repeat);

@@ -101,15 +101,20 @@ impl<'a> Gate<'a> {
 mod tests {
     use super::*;
     use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::SeqCst};
-    use std::time::Duration;
+    use std::time::{Duration, Instant};
 
-    /// Most memory and most jobs that were at work at once, and the answers.
-    fn watched(needs: &[u64], bounds: Bounds) -> (u64, usize, Vec<Option<usize>>) {
+    /// Most memory and most jobs that were at work at once, and the answers. Jobs wait for as many as are wanted.
+    fn watched(needs: &[u64], bounds: Bounds, wanted: usize) -> (u64, usize, Vec<Option<usize>>) {
         let (used, most_used) = (AtomicU64::new(0), AtomicU64::new(0));
         let (count, most) = (AtomicUsize::new(0), AtomicUsize::new(0));
         let answers = run_all(needs, bounds, |job| {
             most_used.fetch_max(used.fetch_add(needs[job], SeqCst) + needs[job], SeqCst);
             most.fetch_max(count.fetch_add(1, SeqCst) + 1, SeqCst);
+            let start = Instant::now();
+            while most.load(SeqCst) < wanted && start.elapsed() < Duration::from_secs(60) {
+                thread::sleep(Duration::from_millis(1));
+            }
+            // One too many would show.
             thread::sleep(Duration::from_millis(5));
             used.fetch_sub(needs[job], SeqCst);
             count.fetch_sub(1, SeqCst);
@@ -123,18 +128,18 @@ mod tests {
     #[test]
     fn as_many_as_fit() {
         let all: Vec<Option<usize>> = (0..8).map(|k| Some(k * 10)).collect();
-        assert_eq!(watched(&[3; 8], Bounds { memory: 7, at_once: 8 }), (6, 2, all.clone()));
-        assert_eq!(watched(&[3; 8], Bounds { memory: 100, at_once: 4 }), (12, 4, all.clone()));
-        assert_eq!(watched(&[3; 8], Bounds { memory: 100, at_once: 1 }), (3, 1, all));
+        assert_eq!(watched(&[3; 8], Bounds { memory: 7, at_once: 8 }, 2), (6, 2, all.clone()));
+        assert_eq!(watched(&[3; 8], Bounds { memory: 100, at_once: 4 }, 4), (12, 4, all.clone()));
+        assert_eq!(watched(&[3; 8], Bounds { memory: 100, at_once: 1 }, 1), (3, 1, all));
     }
 
     /// A job larger than the bound runs, and alone; so does one of all the memory there is.
     #[test]
     fn what_never_fits_runs_alone() {
-        let (most, _, answers) = watched(&[1, 50, 1, u64::MAX / 2, 1], Bounds { memory: 10, at_once: 3 });
+        let (most, _, answers) = watched(&[1, 50, 1, u64::MAX / 2, 1], Bounds { memory: 10, at_once: 3 }, 1);
         assert_eq!(most, u64::MAX / 2);
         assert!(answers.iter().all(Option::is_some));
-        assert_eq!(watched(&[], Bounds { memory: 0, at_once: 3 }).2, []);
+        assert_eq!(watched(&[], Bounds { memory: 0, at_once: 3 }, 1).2, []);
     }
 
     /// A job that panics takes no other with it, and its memory is given back.

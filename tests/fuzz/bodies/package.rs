@@ -3,9 +3,10 @@
 use super::edits::{Base, text};
 use super::{bakes, file, refused};
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::OnceLock;
-use tyndall::bake;
 use tyndall::bake::settings::{Layout, Settings};
+use tyndall::bake::{self, Product};
 use tyndall::export::Atlas;
 use tyndall::export::exr::from_exr_bytes;
 use tyndall::export::manifest::Manifest;
@@ -21,14 +22,10 @@ struct Baked {
 fn baked() -> &'static Baked {
     static BAKED: OnceLock<Baked> = OnceLock::new();
     BAKED.get_or_init(|| {
-        let planet = preset::load("earth-paper", &[]).expect("a shipped preset");
-        let settings = Settings {
-            layouts: vec![Layout::ThreeAtmosphere],
-            wavelengths_nm: vec![450.0, 550.0, 650.0],
-            orders: Orders::First(1),
-            ..Settings::default()
+        let product = match std::env::var_os("TYNDALL_FUZZ_PACKAGE") {
+            Some(folder) => bakes::read(Path::new(&folder)),
+            None => made(),
         };
-        let product = bake::bake(&planet, &settings, &mut |_| {}).expect("a bake");
         let atlas = |name: &str| {
             let bytes = &product.files.iter().find(|f| f.0 == name).expect("a file of the bake").1;
             from_exr_bytes(file(), bytes).expect("our own file")
@@ -36,6 +33,17 @@ fn baked() -> &'static Baked {
         let tables = product.manifest.tables.iter().map(|t| (t.name.clone(), atlas(&t.file))).collect();
         Baked { tables, base: [Base::new(&product.manifest.to_json().expect("a manifest"))] }
     })
+}
+
+fn made() -> Product {
+    let planet = preset::load("earth-paper", &[]).expect("a shipped preset");
+    let settings = Settings {
+        layouts: vec![Layout::ThreeAtmosphere],
+        wavelengths_nm: vec![450.0, 550.0, 650.0],
+        orders: Orders::First(1),
+        ..Settings::default()
+    };
+    bake::bake(&planet, &settings, &mut |_| {}).expect("a bake")
 }
 
 /// Any text as that manifest: a sky that answers.
