@@ -6,8 +6,7 @@ use crate::table::{Bends, Elek2010, Layer, SunCurve, Window};
 /// Vertical optical depth, the median over wavelengths, up to which axes are left alone.
 const THIN: f64 = 4.0;
 // SHARE, CLOSENESS, WIDTH, BEND and POWER were chosen out of some forty sets, by errors of `venus` and of air 100 times
-// denser in tables of usual and of small size. With a power of 2 light near the ground of `venus` is off by up to 17 %,
-// not 7.
+// denser in tables of usual and of small size.
 
 /// What a layer takes of the axis, of air without bound.
 const SHARE: f64 = 0.5;
