@@ -1,14 +1,28 @@
 """What scripts need besides Python's packages, brought where the system lets them."""
 
+import fcntl
+import functools
 import json
 import shutil
 import subprocess
+import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 THREE = "three@0.187.0"
 
 
+def one_at_a_time(install):
+    """Scripts run side by side; installers of one kind do not."""
+    @functools.wraps(install)
+    def locked(*arguments):
+        with open(Path(tempfile.gettempdir()) / f"tyndall-{install.__name__}.lock", "w") as file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            return install(*arguments)
+    return locked
+
+
+@one_at_a_time
 def apt(*packages):
     """None where Debian's packages are installed, else why not."""
     if not shutil.which("apt-get"):
@@ -29,6 +43,7 @@ def program(name, *packages):
     return None if shutil.which(name) else apt(*packages)
 
 
+@one_at_a_time
 def three():
     """The folder whose node_modules have three.js, which npm fetches the first time, or None with a line that says why."""
     home = ROOT / ".venv/node"

@@ -4,6 +4,7 @@
 mod mounted;
 
 mod cli {
+    mod bytes;
     mod chart;
     mod committed;
     mod containers;

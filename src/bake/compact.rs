@@ -23,6 +23,8 @@ use rayon::prelude::*;
 
 /// Name of the layout and of its folder.
 pub const LAYOUT: &str = "compact";
+/// Raised when the bytes of this layout change (see [`super::versions`]).
+pub const ALGORITHM_VERSION: u32 = 1;
 /// Texels of each single-scattering table: altitude, view, sun, azimuth.
 pub const SINGLE_SIZE: [usize; 4] = [24, 44, 40, 8];
 /// Texels of the multiple-scattering table.

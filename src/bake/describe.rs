@@ -4,10 +4,9 @@ use super::compact;
 use super::files::Files;
 use super::palette::Palette;
 use super::settings::Settings;
+use super::versions;
 use super::water::WaterTables;
-use crate::export::manifest::{
-    Adapted, Colour, GridKind, Manifest, Preset, SCHEMA_VERSION, Tool, Wavelengths,
-};
+use crate::export::manifest::{Adapted, Colour, GridKind, Manifest, Preset, SCHEMA_VERSION, Wavelengths};
 use crate::medium::{Medium, Role};
 use crate::preset::{Planet, Water};
 use crate::spectrum::{Adaptation, chromaticity};
@@ -24,7 +23,7 @@ pub fn manifest(
 ) -> Manifest {
     Manifest {
         schema_version: SCHEMA_VERSION,
-        tool: Tool::this(),
+        tool: versions::tool(settings),
         preset: Preset { name: planet.name.clone(), hash: planet.hash(), resolved: planet.resolved() },
         settings: settings.json(),
         wavelengths: Wavelengths { kind: GridKind::Points, nm: settings.wavelengths_nm.clone() },

@@ -19,6 +19,8 @@ use std::f64::consts::PI;
 
 /// Name of the layout and of its folder.
 pub const LAYOUT: &str = "elek2010";
+/// Raised when the bytes of this layout change (see [`super::versions`]).
+pub const ALGORITHM_VERSION: u32 = 1;
 /// Texels of the extinction texture (altitude, view) and of the ambient one (Elek & Kmoch §6).
 const EXTINCTION_SIZE: [usize; 2] = [256, 512];
 const AMBIENT_SIZE: usize = 256;

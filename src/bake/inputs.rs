@@ -2,6 +2,7 @@
 //! equal, so are the bytes.
 
 use super::settings::Settings;
+use super::versions;
 use crate::export::changes::{Change, changes};
 use crate::export::manifest::{Manifest, Tool};
 use crate::preset::Planet;
@@ -11,7 +12,7 @@ use serde_json::{Map, Value, json};
 pub fn asked(planet: &Planet, settings: &Settings) -> Value {
     let waters = settings.waters.list.iter().map(|w| (w.name.clone(), w.resolved()));
     joined(
-        &Tool::this(),
+        &versions::tool(settings),
         planet.resolved(),
         waters.collect(),
         settings.json(),

@@ -21,6 +21,7 @@ mod spectral;
 pub mod tables;
 pub mod three_atmosphere;
 mod vectors;
+pub mod versions;
 pub mod water;
 
 pub use lights::Lights;

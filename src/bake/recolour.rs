@@ -4,7 +4,7 @@
 use super::files::{Content, entry};
 use super::palette::Palette;
 use super::skies::{self, Skies};
-use super::{compact, describe, pictures, report};
+use super::{compact, describe, pictures, report, versions};
 use crate::error::{Error, Result};
 use crate::export::Atlas;
 use crate::export::manifest::{Manifest, Preset, Tool};
@@ -53,7 +53,9 @@ pub fn recolour(source: &Source, wanted: &Wanted) -> Result<(Manifest, Vec<Conte
     let samples = skies::from_file(&source.folder.join(skies::FILE), source.skies, &old.wavelengths.nm)?;
     let palette = palette(old, &planet, &samples, wanted).map_err(|e| refuse(e.to_string()))?;
     let mut new = old.clone();
-    new.tool = Tool::this();
+    // Its tables are the source's.
+    new.tool = Tool::this(old.tool.algorithms.clone());
+    new.tool.algorithms.retain(|name, _| [versions::SOLVER, compact::LAYOUT].contains(&name.as_str()));
     new.tables.retain(|t| t.layout == compact::LAYOUT);
     new.waters = Vec::new();
     new.preset = Preset { name: planet.name.clone(), hash: planet.hash(), resolved: planet.resolved() };

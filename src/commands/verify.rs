@@ -1,13 +1,14 @@
 //! `tyndall verify`: do the files of a bake match their manifest, its preset, and this tool?
 
 use super::text;
+use crate::bake::versions;
 use crate::error::{Error, Line, Result};
 use crate::export::atlas::{Atlas, Samples};
 use crate::export::exr::from_exr_bytes;
 use crate::export::manifest::{MANIFEST, Manifest, Precision, Table, hash_of};
 use crate::input;
 use crate::preset;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -133,7 +134,24 @@ fn about_the_manifest(manifest: &Manifest, shipped: impl Fn(&str) -> Option<Stri
         let what = format!("baked by {} {}, this is {this}", manifest.tool.name, manifest.tool.version);
         found.push(difference("tool.version", what));
     }
+    found.extend(about_algorithms(&manifest.tool.algorithms));
     found
+}
+
+/// Algorithms that would write other bytes today.
+fn about_algorithms(recorded: &BTreeMap<String, u32>) -> Vec<Difference> {
+    if recorded.is_empty() {
+        let what =
+            "are not recorded: the bake is of an earlier tool and may hold other bytes than this one writes";
+        return vec![difference("tool.algorithms", what)];
+    }
+    let current = versions::all();
+    let changed = recorded.iter().filter(|(name, version)| current.get(*name) != Some(*version));
+    let told = |(name, version): (&String, &u32)| {
+        let now = current.get(name).map_or("has none".into(), |now| format!("has version {now}"));
+        difference(&format!("tool.algorithms.{name}"), format!("baked by version {version}, this tool {now}"))
+    };
+    changed.map(told).collect()
 }
 
 /// A file's presence and hash, then what `content` finds in it.

@@ -45,7 +45,10 @@ pub struct Manifest {
 pub struct Tool {
     pub name: String,
     pub version: String,
-    /// Fingerprint of the sources that decide what a bake holds (see `build.rs`), 32 hexadecimal digits.
+    /// The version of each algorithm that decided a byte: `solver`, a layout, `water`.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub algorithms: BTreeMap<String, u32>,
+    /// A fingerprint that bakes held before `algorithms`; such a bake is read, and stale.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub source: String,
 }

@@ -2,14 +2,16 @@
 
 use super::manifest::{Manifest, Tool};
 use crate::error::Result;
+use std::collections::BTreeMap;
 
 impl Tool {
-    /// The program that is running.
-    pub fn this() -> Self {
+    /// The program that is running, with the algorithms that it used.
+    pub fn this(algorithms: BTreeMap<String, u32>) -> Self {
         Tool {
             name: "tyndall".into(),
             version: env!("CARGO_PKG_VERSION").into(),
-            source: env!("TYNDALL_SOURCE").into(),
+            algorithms,
+            source: String::new(),
         }
     }
 }

@@ -34,3 +34,7 @@ mod sunlight;
 pub mod view;
 
 pub use optics::PhaseLanes as Phase;
+
+/// Raised when the bytes of what every bake shares change: solver, spectra, colours, report, pictures (see
+/// [`crate::bake::versions`]).
+pub const ALGORITHM_VERSION: u32 = 1;

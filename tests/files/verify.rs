@@ -56,7 +56,7 @@ fn manifest(staging: &Staging) -> Manifest {
     let resolved = json!({"radius_m": 11266.7, "constituents": [{"g": 0.1 + 0.2, "z": 1e-300}], "a": 1.0});
     Manifest {
         schema_version: SCHEMA_VERSION,
-        tool: Tool::this(),
+        tool: Tool::this(tyndall::bake::versions::all()),
         preset: Preset { name: "phobos".into(), hash: hash_of(&resolved), resolved },
         settings: json!({"orders": "auto", "shipped_preset": true}),
         wavelengths: Wavelengths { kind: GridKind::Points, nm: vec![440.0, 1.0 / 3.0, f64::MIN_POSITIVE] },

@@ -25,6 +25,8 @@ use phase::{cornette_shanks, rayleigh};
 
 /// Name of the layout and of its folder.
 pub const LAYOUT: &str = "three-atmosphere";
+/// Raised when the bytes of this layout change (see [`super::versions`]).
+pub const ALGORITHM_VERSION: u32 = 1;
 /// The package's unit of luminance, cd/m²: what its own tables give for sunlight of radiance 1 (its
 /// `sunRadianceToLuminance`, weighted as sRGB's luminance), so that one exposure suits its tables and ours.
 pub const LUMINANCE_UNIT: f64 = 75_716.9;

@@ -39,6 +39,8 @@ pub use trial::{Trial, Under, bytes};
 
 /// Name of the layout and of its folder.
 pub const LAYOUT: &str = "water";
+/// Raised when the bytes of waters change (see [`super::versions`]).
+pub const ALGORITHM_VERSION: u32 = 1;
 /// The paper's size: depth, view, sun.
 pub const SIZE: [usize; 3] = [32, 64, 64];
 

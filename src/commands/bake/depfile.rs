@@ -23,9 +23,18 @@ pub fn write(args: &Args, asked: &[String], planets: &[Option<String>]) -> Resul
         let Some(name) = name else { continue };
         let mut needs = preset::planet_files(asked, &args.set)?;
         needs.extend(common.iter().cloned());
-        text.push_str(&rule(&args.out.join(name).join(MANIFEST), &needs));
+        let bake = args.out.join(name).join(MANIFEST);
+        text.push_str(&rule(&bake, &needs));
+        freshen(&bake);
     }
     std::fs::write(file, text).map_err(|e| Error::machine(file, e))
+}
+
+/// A bake that was left alone is as good as a new one, and make shall see it newer than this program. Where that cannot
+/// be noted, make asks again next time, and no more.
+fn freshen(bake: &Path) {
+    let file = std::fs::File::options().append(true).open(bake);
+    let _ = file.and_then(|file| file.set_modified(std::time::SystemTime::now()));
 }
 
 /// Names of the planets that could be read.
