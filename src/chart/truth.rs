@@ -50,6 +50,12 @@ impl Scene {
     pub fn is_lit(&self) -> bool {
         self.xyz[1] > DARK
     }
+
+    /// A view of no planet.
+    #[cfg(test)]
+    pub fn made_up(region: usize, xyz: [f64; 3]) -> Scene {
+        Scene { region, view: [2.0, 0.5, 0.5, 0.0], xyz, radiance: xyz[1] }
+    }
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]

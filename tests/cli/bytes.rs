@@ -13,15 +13,21 @@ use std::path::{Path, PathBuf};
 use tyndall::bake::versions;
 
 /// Which bakes: what each holds that no other does. Their options come after those of [`SMALL`].
-const BAKES: [(&str, &str, &str); 11] = [
+const BAKES: [(&str, &str, &str); 13] = [
     ("elek2010", "earth", "--layout elek2010"),
     ("compact", "earth", "--layout compact"),
-    ("three-atmosphere", "earth", "--layout three-atmosphere"),
+    ("three-atmosphere", "earth-blog", "--layout three-atmosphere --wavelengths 3 --orders 1"),
     ("containers", "earth-paper", "--formats exr,ktx2,dds,npy"),
     ("spectral", "earth-paper", "--layout elek2010 --spectral --colour-space rec2020"),
     ("literal", "earth-paper", "--layout elek2010 --solver literal"),
-    ("water", "earth-paper", "--layout compact --waters clear-ocean,muddy --underwater --size water=3x4x5"),
-    ("thick", "venus", "--orders auto"),
+    ("water", "earth-paper", "--layout elek2010 --waters clear-ocean --size water=3x4x5 --wavelengths 3"),
+    (
+        "underwater",
+        "earth-paper",
+        "--layout elek2010 --waters muddy --underwater --size water=2x2x2 --water-orders 1",
+    ),
+    ("thick", "venus", "--layout elek2010 --orders auto"),
+    ("cloudtop", "venus-cloudtop", "--orders auto"),
     ("thin", "earth-sparse10", "--orders auto"),
     ("dusty", "mars", "--orders auto --wavelengths 440,550,680"),
     ("window", "earth", "--altitudes 0..12km --suns -6..60 --views sky"),
