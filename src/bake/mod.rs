@@ -24,4 +24,4 @@ mod vectors;
 pub mod water;
 
 pub use lights::Lights;
-pub use pipeline::{Product, bake, bake_in};
+pub use pipeline::{Product, bake, bake_in, check_folded};
