@@ -13,6 +13,8 @@ pub const MOST_JSON: u64 = 16 << 20;
 /// Bytes of a CSV file or list at most.
 pub const MOST_CSV: u64 = 128 << 20;
 
+const BYTE_ORDER_MARK: &str = "\u{feff}";
+
 /// The text of a file that the user named: also a pipe, as shells make one of `<(…)`.
 ///
 /// # Errors
@@ -27,13 +29,23 @@ pub fn text(path: &Path, most: u64) -> Result<String> {
 /// # Errors
 /// As [`text`].
 pub fn text_of(path: &Path, stream: impl Read, most: u64) -> Result<String> {
-    let mut text = String::new();
+    let mut bytes = Vec::new();
     // The byte after the last tells a file that ends there from one that goes on.
-    stream.take(most + 1).read_to_string(&mut text).map_err(|e| Error::reading(path, e))?;
-    if text.len() as u64 > most {
+    stream.take(most + 1).read_to_end(&mut bytes).map_err(|e| Error::reading(path, e))?;
+    if bytes.len() as u64 > most {
         return Err(Error::file(path, format!("longer than {most} bytes, which are the most")));
     }
-    Ok(text)
+    if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
+        return Err(Error::file(path, "is UTF-16: save it as UTF-8"));
+    }
+    // Some editors mark UTF-8 by a character that is no part of the text.
+    if bytes.starts_with(BYTE_ORDER_MARK.as_bytes()) {
+        bytes.drain(..BYTE_ORDER_MARK.len());
+    }
+    String::from_utf8(bytes).map_err(|e| {
+        let reason = format!("not UTF-8 at byte {}", e.utf8_error().valid_up_to() + 1);
+        Error::file(path, reason)
+    })
 }
 
 /// The text of a file that another file names: no pipe or device, on which a reader could wait for ever.
@@ -99,6 +111,16 @@ mod tests {
             let zero = named_text(Path::new("/dev/zero"), 1000).unwrap_err().to_string();
             assert!(zero.contains("not a file but a device"), "{zero}");
         }
+    }
+
+    /// The mark that some editors put first is no part of a text, here as everywhere; in UTF-16 the whole is another text.
+    #[test]
+    fn byte_order_marks_are_left_out() {
+        let text = |bytes: &[u8]| text_of(Path::new("a"), bytes, 99).map_err(|e| e.to_string());
+        assert_eq!(text("\u{feff}{}".as_bytes()), Ok("{}".into()));
+        assert_eq!(text("{}\u{feff}".as_bytes()), Ok("{}\u{feff}".into()));
+        assert_eq!(text(&[0xff, 0xfe, b'{', 0]), Err("a: is UTF-16: save it as UTF-8".into()));
+        assert_eq!(text(b"ab\xff"), Err("a: not UTF-8 at byte 3".into()));
     }
 
     /// Paths out of the bake are refused before anything is opened, and a file of a terabyte, of which nothing is on the

@@ -33,6 +33,9 @@ pub const MOST_POINTS: usize = 10_000_000;
 /// Bytes of a file of views at most.
 const MOST_BYTES: u64 = 2 << 30;
 
+/// By how much a cosine may lie beyond 1 and is taken for 1.
+const COSINE_ROUNDING: f64 = 1e-6;
+
 /// Reads points from a CSV file. Errors name the file, line, column and value.
 pub fn read_points(path: &Path) -> Result<Vec<Point>> {
     let file = std::fs::File::open(path).map_err(|e| Error::reading(path, e))?;
@@ -123,7 +126,9 @@ fn number(path: &Path, line: u64, column: &str, text: &str) -> Result<f64> {
     }
     match column {
         "altitude_m" if value < 0.0 => Err(refuse("below the ground")),
-        "mu_view" | "mu_sun" if value.abs() > 1.0 => Err(refuse("a cosine is between -1 and 1")),
+        // A cosine that was rounded to f32 on its way lies beyond 1 by 1.2e-7.
+        "mu_view" | "mu_sun" if value.abs() <= 1.0 + COSINE_ROUNDING => Ok(value.clamp(-1.0, 1.0)),
+        "mu_view" | "mu_sun" => Err(refuse("a cosine is between -1 and 1")),
         _ => Ok(value),
     }
 }

@@ -6,6 +6,7 @@ mod mounted;
 mod cli {
     mod bytes;
     mod chart;
+    mod colour_pipe;
     mod committed;
     mod containers;
     mod damaged;
@@ -13,9 +14,11 @@ mod cli {
     mod disk;
     mod farm;
     mod help;
+    mod help_width;
     mod hostile;
     mod many;
     mod media;
+    mod names;
     mod options;
     mod places;
     mod points;
@@ -25,6 +28,7 @@ mod cli {
     mod round_trip;
     mod run;
     mod same_bytes;
+    mod slips;
     mod stopped;
     mod windows;
 }

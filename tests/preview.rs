@@ -12,6 +12,7 @@ mod preview {
     mod refused;
     mod run;
     mod seams;
+    mod told;
     mod water;
     #[cfg(target_os = "linux")]
     mod window;

@@ -113,3 +113,32 @@ fn grey_transmittance_is_that_of_beer_and_lambert() {
         assert!((found / libm::exp(-depth) - 1.0).abs() < 1e-3, "{channel} {found} {depth}");
     }
 }
+
+/// `diff` looks at the views of this layout as at those of every other: of two bakes under ground of another brightness
+/// their light differs, and of one with itself it does not.
+#[test]
+fn diff_compares_views() {
+    let settings = Settings {
+        wavelengths_nm: vec![450.0, 550.0, 650.0],
+        orders: tyndall::transport::solve::Orders::First(1),
+        ..settings()
+    };
+    let dir = tempfile::tempdir().unwrap();
+    let write = |name: &str, albedo: &str| {
+        let planet = preset::load("earth-paper", &[format!("ground.albedo={albedo}")]).unwrap();
+        let folder = dir.path().join(name);
+        for (file, bytes) in bake(&planet, &settings, &mut |_| {}).unwrap().files {
+            std::fs::create_dir_all(folder.join(&file).parent().unwrap()).unwrap();
+            std::fs::write(folder.join(&file), bytes).unwrap();
+        }
+        folder
+    };
+    let (a, b) = (write("a", "0.1"), write("b", "0.8"));
+    let compare =
+        |a: &std::path::Path, b: &std::path::Path| tyndall::commands::diff::compare(a, b, 20).unwrap();
+    let same = compare(&a, &a);
+    assert!(same.nothing() && same.views.iter().any(|v| v.layout == Layout::ThreeAtmosphere.name()));
+    let differ = compare(&a, &b);
+    let largest = differ.views.iter().map(|v| v.radiance.max).fold(0.0, f64::max);
+    assert!(largest > 0.5, "{largest}");
+}

@@ -1,5 +1,6 @@
 //! What the quality report says that a user must hear: tables or a medium that miss the planet's own day.
 
+use super::settings::Layout;
 use serde_json::{Map, Value};
 
 /// Error of the tables of a layout on 95 % of views by day, or of those near the horizon by day, above which the bake warns: five times that of the paper's.
@@ -12,19 +13,15 @@ const DAY: [&str; 2] = ["day", "horizon by day"];
 /// Warnings where the tables of a layout are so coarse that they miss the light of their own medium by day, and where the
 /// medium of the paper is not the planet's.
 pub fn tables(quality: &Map<String, Value>) -> Vec<String> {
-    let own = [
-        ("compact", "compact_against_direct_integration", Some("rgb")),
-        ("elek2010", "elek2010_against_its_own_medium", None),
-    ];
-    let warning = |(layout, key, part): (&str, &str, Option<&str>)| {
+    let warning = |layout: Layout| {
         let of = |region: &str| {
-            let found = quality.get(key)?.get(region)?;
-            part.map_or(Some(found), |part| found.get(part))?["p95"].as_f64()
+            let found = quality.get(layout.report_key())?.get(region)?;
+            found.get("rgb").unwrap_or(found)["p95"].as_f64()
         };
         let worst = DAY.into_iter().filter_map(of).fold(0.0, f64::max);
         (worst > TABLES_WARNING).then(|| coarse(layout, worst))
     };
-    let mut out: Vec<String> = own.into_iter().filter_map(warning).collect();
+    let mut out: Vec<String> = Layout::ALL.into_iter().filter_map(warning).collect();
     let simplified =
         quality.get("elek2010_against_the_full_medium").and_then(|q| q["day"]["median"].as_f64());
     if let Some(error) = simplified.filter(|e| *e > MEDIUM_WARNING) {
@@ -37,10 +34,40 @@ pub fn tables(quality: &Map<String, Value>) -> Vec<String> {
     out
 }
 
-fn coarse(layout: &str, error: f64) -> String {
+fn coarse(layout: Layout, error: f64) -> String {
     let percent = if error < 100.0 { format!("{:.0} %", 100.0 * error) } else { "any measure".into() };
-    let besides = if layout == "elek2010" { ", and layout compact errs less" } else { "" };
-    format!(
-        "layout {layout}: one in twenty views by day is off by more than {percent}; --size takes larger tables{besides}"
-    )
+    let mend = match layout {
+        Layout::Compact => "--size takes larger tables",
+        Layout::Elek2010 => "--size takes larger tables, and layout compact errs less",
+        Layout::ThreeAtmosphere => "its sizes are its reader's own, and layout compact errs less",
+    };
+    let name = layout.name();
+    format!("layout {name}: one in twenty views by day is off by more than {percent}; {mend}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    /// A layout whose tables miss the day is warned of by its name, whichever it is; a good one is not.
+    #[test]
+    fn every_layout_is_judged() {
+        for layout in Layout::ALL {
+            let report = |p95: f64| {
+                let error = json!({ "p95": p95 });
+                let regions = match layout {
+                    Layout::Compact => json!({ "day": { "rgb": error } }),
+                    _ => json!({ "day": error }),
+                };
+                let mut quality = Map::new();
+                quality.insert(layout.report_key().into(), regions);
+                tables(&quality)
+            };
+            let told = report(0.5);
+            assert!(told.len() == 1 && told[0].contains(&format!("layout {}: ", layout.name())), "{told:?}");
+            assert!(told[0].contains("more than 50 %"), "{told:?}");
+            assert!(report(0.1).is_empty());
+        }
+    }
 }

@@ -25,4 +25,4 @@ pub mod versions;
 pub mod water;
 
 pub use lights::Lights;
-pub use pipeline::{Product, bake, bake_in};
+pub use pipeline::{Product, bake, bake_in, check_folded};

@@ -254,17 +254,17 @@ impl<'a> Solved<'a> {
             out.insert("solver".into(), report::solver(&self.full, light));
         }
         if let (Some(truth), Some(sky)) = (&truth, &skies.compact) {
-            out.insert("compact_against_direct_integration".into(), report::compact(sky, palette, truth));
+            out.insert(Layout::Compact.report_key().into(), report::compact(sky, palette, truth));
         }
         if let (Some(truth), Some(sky)) = (&truth, &skies.three_atmosphere) {
             let errors = report::in_rgb(sky, palette, truth, AerosolPhase::Preset);
-            out.insert("three_atmosphere_against_direct_integration".into(), errors);
+            out.insert(Layout::ThreeAtmosphere.report_key().into(), errors);
         }
         if let (Some(light), Some(sky)) = (&self.paper_light, &skies.paper) {
             out.insert("paper_medium_solver".into(), report::solver(&self.paper, light));
             let own = report::truths(&self.paper, light, &self.settings.window);
             let own = report::in_rgb(sky, palette, &own, AerosolPhase::Isotropic);
-            out.insert("elek2010_against_its_own_medium".into(), own);
+            out.insert(Layout::Elek2010.report_key().into(), own);
             if let Some(truth) = &truth {
                 let full = report::in_rgb(sky, palette, truth, AerosolPhase::Preset);
                 out.insert("elek2010_against_the_full_medium".into(), full);
@@ -349,14 +349,18 @@ impl Skies {
 }
 
 /// What is folded must be there and scatter.
-fn check_folded(medium: &Medium, name: &str) -> Result<()> {
+pub fn check_folded(medium: &Medium, name: &str) -> Result<()> {
     let scatterers = medium.constituents.iter().filter(|c| c.scatters()).map(|c| c.name.as_str());
     let scatterers: Vec<&str> = scatterers.collect();
     if scatterers.contains(&name) {
         return Ok(());
     }
-    let all = scatterers.join(", ");
-    Err(Error::Argument(format!("--fold {name}: nothing of that name scatters here; there is {all}")))
+    let near = crate::names::nearest(name, scatterers.iter().copied());
+    let known = match near {
+        Some(near) => format!("the nearest is `{near}`"),
+        None => format!("there is {}", scatterers.join(", ")),
+    };
+    Err(Error::Argument(format!("--fold {name}: nothing of that name scatters here; {known}")))
 }
 
 /// A warning where wavelengths lie outside those that colours are made of.

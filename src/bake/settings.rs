@@ -20,6 +20,18 @@ pub enum Layout {
 }
 
 impl Layout {
+    /// Every layout, in the order of reports.
+    pub const ALL: [Layout; 3] = [Layout::Compact, Layout::Elek2010, Layout::ThreeAtmosphere];
+
+    /// Key of the quality report under which its tables stand against the truth of their own medium, by region.
+    pub fn report_key(self) -> &'static str {
+        match self {
+            Layout::Elek2010 => "elek2010_against_its_own_medium",
+            Layout::Compact => "compact_against_direct_integration",
+            Layout::ThreeAtmosphere => "three_atmosphere_against_direct_integration",
+        }
+    }
+
     pub fn name(self) -> &'static str {
         match self {
             Layout::Elek2010 => super::elek2010::LAYOUT,

@@ -17,6 +17,7 @@ use crate::bake::water::Waters;
 use crate::error::{Error, Result};
 use crate::export::claim::Claim;
 use crate::export::container::Container;
+use crate::export::manifest::Manifest;
 use crate::export::staging::Staging;
 use crate::memory;
 use crate::plan::{Plan, load_waters};
@@ -62,7 +63,7 @@ pub struct Args {
     #[arg(long, default_value = "out", value_name = "FOLDER")]
     out: PathBuf,
     /// Layouts to write, comma-separated
-    #[arg(long, value_delimiter = ',', value_enum, default_values_t = [Layout::Elek2010, Layout::Compact])]
+    #[arg(long, value_delimiter = ',', value_enum, default_value = "elek2010,compact")]
     layout: Vec<Layout>,
     /// Texels: altitude x view x sun x azimuth (of elek2010), or LAYOUT=AxBxCxD with LAYOUT elek2010, compact
     /// (its table of multiple scattering) or compact-single; compact-transmittance=AxB: altitude x view;
@@ -176,10 +177,12 @@ pub fn run(args: &Args) -> Result<()> {
     let (settings, sized) = settings::settings(args)?;
     let asked = list::asked(args)?;
     let planets: Vec<Result<Planet>> = asked.iter().map(|p| preset::load(p, &args.set)).collect();
+    let progress = Progress::new(args.quiet);
+    list::refuse_unknown(&asked, &planets, &progress)?;
+    settings::check_folded(&settings, &planets)?;
     refuse_shared_folders(&asked, &planets)?;
     share_threads(args.threads)?;
     let names = depfile::names(&planets);
-    let progress = Progress::new(args.quiet);
     if asked.len() > 1 {
         planets.iter().filter_map(|p| p.as_ref().err()).for_each(|e| progress.always(&format!("error: {e}")));
     }
@@ -356,8 +359,20 @@ pub fn planned(plan: &Plan, out: &Path, quiet: bool, json: bool) -> Result<()> {
     summary::failure(outcomes)
 }
 
+/// Layouts of the bake that stands in a folder; none where there is none.
+fn layouts_at(folder: &Path) -> Vec<String> {
+    let Ok(manifest) = Manifest::read(folder) else { return Vec::new() };
+    let has = |name: &&str| manifest.tables.iter().any(|table| table.layout == *name);
+    Layout::ALL.map(Layout::name).into_iter().filter(has).map(str::to_string).collect()
+}
+
+fn left_out(layout: &str) -> String {
+    format!("layout {layout} of the bake before is gone: --layout leaves it out")
+}
+
 /// Solves and writes.
 fn make(folder: &Path, settings: &Settings, progress: &Progress, planet: &Planet, need: u64) -> Result<Done> {
+    let before = layouts_at(folder);
     let staging = Staging::begin(folder)?;
     let about = format!(", in some {}", memory::shown(need));
     let mut clock = progress.begin(&planet.name, stages(settings), &about);
@@ -367,6 +382,8 @@ fn make(folder: &Path, settings: &Settings, progress: &Progress, planet: &Planet
         staging.write(file, bytes)?;
     }
     staging.commit()?;
+    let gone = before.iter().filter(|name| !settings.layouts.iter().any(|layout| layout.name() == **name));
+    gone.for_each(|name| progress.say(&format!("{}: {}", planet.name, left_out(name))));
     product.manifest.warnings.iter().for_each(|w| progress.say(&format!("warning: {}: {w}", planet.name)));
     progress.end(&planet.name, &format!("done in {:.1} s", clock.elapsed().as_secs_f64()));
     Ok(Done {

@@ -28,7 +28,7 @@ pub struct Args {
     /// Instead: how each method bears awkward planets and views, as a table in Markdown on stdout
     #[arg(long, conflicts_with_all = ["preset", "only", "set", "json"])]
     stability: bool,
-    /// Folder for <preset>.csv, .svg and .png; unfinished work is kept there too
+    /// Folder for `<preset>.csv`, .svg and .png; unfinished work is kept there too
     #[arg(long, default_value = "out/charts", value_name = "FOLDER")]
     out: PathBuf,
     /// Views of each region

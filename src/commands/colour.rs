@@ -1,7 +1,8 @@
 //! `tyndall colour`: spectra to XYZ, chromaticity, linear RGB and CIELAB.
 
-use super::colour_input::{Named, black_body, read};
-use super::text::{number, print};
+use super::colour_input::{Input, Named, black_body, read};
+use super::colour_views::{Illuminant, Light, illuminant, tell_of_views};
+use super::text::{number, print, talk};
 use crate::error::Result;
 use crate::spectrum::*;
 use std::collections::BTreeMap;
@@ -10,15 +11,21 @@ use std::path::PathBuf;
 /// Spectra as CSV to XYZ, xy, linear RGB and CIELAB.
 ///
 /// XYZ = k Σ spectrum · (x̄, ȳ, z̄) · 1 nm over 360–830 nm with the CIE 1931 2° observer; the spectrum is linear
-/// between its samples, end values are held. (ASTM E308 in its practice range stops at 780 nm: 2e-6 less X for
-/// a white.)
+/// between its samples, end values are held. One with samples between whole nanometres is integrated as it is given,
+/// so that no line falls between them. (ASTM E308 in its practice range stops at 780 nm: 2e-6 less X for a white.)
+///
+/// Views of `tyndall sample` and `tyndall reference` are radiance over the star's irradiance. They are taken under
+/// --illuminant, and Y = 100 is a white surface that this light meets squarely:
+/// tyndall sample out/earth --points views.csv | tyndall colour
 #[derive(clap::Args, Debug)]
 #[command(before_help = "Example: tyndall colour --blackbody 5778
          tyndall colour spectra.csv --scale photometric --json")]
 pub struct Args {
-    /// CSV with a column wavelength_nm and one column a spectrum; standard input without it or with `-`
+    /// CSV with a column wavelength_nm and one column a spectrum, or the answer of `tyndall sample`; standard input
+    /// without it or with `-`
     pub file: Option<PathBuf>,
-    /// A black body of this temperature in K (W/(m² sr nm)) instead of a file; repeatable
+    /// A black body of this temperature in K instead of a file; repeatable. Y is 100, unless --scale photometric or
+    /// --white-y asks for its radiance, W/(m² sr nm)
     #[arg(long, value_name = "KELVIN")]
     pub blackbody: Vec<f64>,
     /// What XYZ count in
@@ -27,6 +34,10 @@ pub struct Args {
     /// The Y that is white: RGB (1, 1, 1) and L* = 100 [default: 100 if relative, 1 if photometric]
     #[arg(long, value_name = "Y")]
     pub white_y: Option<f64>,
+    /// Of views: the star's irradiance that their values are over. sun (at 1 au), e (equal energy), a CSV file in
+    /// W/(m² nm), or none where they are radiance (sample --absolute) [default: sun]
+    #[arg(long, value_name = "LIGHT", value_parser = illuminant)]
+    pub illuminant: Option<Illuminant>,
     /// Linear RGB space
     #[arg(long, value_enum, default_value = "srgb")]
     pub colour_space: ColourSpace,
@@ -96,22 +107,29 @@ pub fn run(args: &Args) -> Result<()> {
     if args.matrix {
         return print(&matrices(args));
     }
-    let spectra = if args.blackbody.is_empty() {
+    let Input { spectra, are_views } = if args.blackbody.is_empty() {
         read(args.file.as_deref())?
     } else if args.file.is_some() {
         return Err(crate::Error::Argument("give a file or --blackbody, not both".into()));
     } else {
-        args.blackbody.iter().map(|&t| black_body(t)).collect::<Result<_>>()?
+        let spectra = args.blackbody.iter().map(|&t| black_body(t)).collect::<Result<_>>()?;
+        Input { spectra, are_views: false }
     };
     if let Some(white) = args.white_y.filter(|w| !(w.is_finite() && *w > 0.0)) {
         return Err(crate::Error::Argument(format!("--white-y {white}: must be greater than 0")));
     }
-    warn_of_held_ends(&spectra);
-    if args.spectra {
-        return print(&spectra_csv(&spectra));
+    let light = Light::of(are_views, args.illuminant.as_ref())?;
+    if are_views {
+        tell_of_views(&spectra, light.as_ref());
+    } else {
+        warn_of_held_ends(&spectra);
     }
-    let colours = colours(args, &spectra);
-    print(&if args.json { as_json(args, &colours) } else { as_csv(args, &colours) })
+    if args.spectra {
+        return print(&spectra_csv(&spectra, light.as_ref()));
+    }
+    let colours = colours(args, &spectra, light.as_ref());
+    warn_of_brightness(args, &colours);
+    print(&if args.json { as_json(args, &colours, light.as_ref()) } else { as_csv(args, &colours) })
 }
 
 fn warn_of_held_ends(spectra: &[Named]) {
@@ -126,11 +144,50 @@ fn warn_of_held_ends(spectra: &[Named]) {
     }
 }
 
-fn colours(args: &Args, spectra: &[Named]) -> Vec<Colour> {
-    let white_y = args.white_y.unwrap_or(args.scale.default_white());
-    let to_rgb = from_xyz(args);
-    let (observer, k) = (args.observer.observer(), args.scale.k(args.observer.observer()));
-    let xyz_of = |s: &Named| observer.xyz_of(&s.spectrum).map(|v| v * k);
+/// RGB and L* far beyond white are no colours that anybody sees: the unit is not what the scale counts in.
+fn warn_of_brightness(args: &Args, colours: &[Colour]) {
+    let white = white_y(args);
+    for c in colours.iter().filter(|c| c.xyz[1] > 10.0 * white) {
+        let (name, y) = (&c.name, number(c.xyz[1]));
+        talk(&format!(
+            "warning: {name}: Y = {y}, but white is Y = {white}: RGB and L* count from there; see --white-y"
+        ));
+    }
+}
+
+/// The Y that is white.
+fn white_y(args: &Args) -> f64 {
+    args.white_y.unwrap_or(args.scale.default_white())
+}
+
+/// A spectrum at whole nanometres, under a light where it is a view.
+fn nanometres(s: &Named, light: Option<&Light>) -> Vec<f64> {
+    let values = at_nanometres(&s.spectrum);
+    match light {
+        Some(light) => values.iter().zip(&light.irradiance).map(|(v, e)| v * e).collect(),
+        None => values,
+    }
+}
+
+/// The k of all spectra; none where each is brought to Y = 100.
+fn k(args: &Args, light: Option<&Light>) -> Option<f64> {
+    let observer = args.observer.observer();
+    match (args.scale, light) {
+        (Scale::Relative, Some(light)) => Some(light.k(observer)),
+        (Scale::Relative, None) if !args.blackbody.is_empty() && args.white_y.is_none() => None,
+        (scale, _) => Some(scale.k(observer)),
+    }
+}
+
+fn colours(args: &Args, spectra: &[Named], light: Option<&Light>) -> Vec<Colour> {
+    let (white_y, to_rgb) = (white_y(args), from_xyz(args));
+    let (observer, k) = (args.observer.observer(), k(args, light));
+    let xyz_of = |s: &Named| {
+        let values = nanometres(s, light);
+        let sums = observer.xyz(|w| values[w as usize - OBSERVER_RANGE.0]);
+        let k = k.unwrap_or(100.0 / sums[1]);
+        sums.map(|v| v * k)
+    };
     let first = xyz_of(&spectra[0]);
     let colour = |s: &Named| {
         let xyz = xyz_of(s);
@@ -166,7 +223,7 @@ fn as_csv(args: &Args, colours: &[Colour]) -> String {
     out
 }
 
-fn as_json(args: &Args, colours: &[Colour]) -> String {
+fn as_json(args: &Args, colours: &[Colour], light: Option<&Light>) -> String {
     let one = |c: &Colour| {
         let mut object = serde_json::json!({
             "name": c.name, "xyz": c.xyz, "xy": c.xy, "rgb": c.rgb, "lab": [c.lab.l, c.lab.a, c.lab.b],
@@ -176,14 +233,17 @@ fn as_json(args: &Args, colours: &[Colour]) -> String {
         }
         object
     };
-    let report = serde_json::json!({
+    let mut report = serde_json::json!({
         "observer": format!("{}, 1 nm, 360-830 nm, plain summation", args.observer.name()),
-        "k": args.scale.k(args.observer.observer()),
-        "white_y": args.white_y.unwrap_or(args.scale.default_white()),
+        "k": k(args, light).map_or("Y = 100 for each".into(), serde_json::Value::from),
+        "white_y": white_y(args),
         "colour_space": args.colour_space.name(),
         "lab_white": "D65",
         "colours": colours.iter().map(one).collect::<Vec<_>>(),
     });
+    if let Some(light) = light {
+        report["illuminant"] = light.name.clone().into();
+    }
     format!("{report:#}\n")
 }
 
@@ -215,12 +275,13 @@ fn matrices(args: &Args) -> String {
     out
 }
 
-fn spectra_csv(spectra: &[Named]) -> String {
+fn spectra_csv(spectra: &[Named], light: Option<&Light>) -> String {
     let mut out = String::from("wavelength_nm");
     spectra.iter().for_each(|s| out.push_str(&format!(",{}", csv_field(&s.name))));
+    let columns: Vec<Vec<f64>> = spectra.iter().map(|s| nanometres(s, light)).collect();
     for w in OBSERVER_RANGE.0..=OBSERVER_RANGE.1 {
         out.push_str(&format!("\n{w}"));
-        spectra.iter().for_each(|s| out.push_str(&format!(",{}", s.spectrum.at(w as f64))));
+        columns.iter().for_each(|c| out.push_str(&format!(",{}", c[w - OBSERVER_RANGE.0])));
     }
     out.push('\n');
     out

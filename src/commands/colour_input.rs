@@ -1,5 +1,6 @@
-//! Spectra for `tyndall colour`: columns of a CSV file, or black bodies.
+//! Spectra for `tyndall colour`: columns of a CSV file, views of `tyndall sample`, or black bodies.
 
+use super::colour_views::{are_views, views};
 use crate::error::{Error, Result};
 use crate::input::{self, MOST_CSV};
 use crate::spectrum::{OBSERVER_RANGE, Spectrum, planck_law};
@@ -11,9 +12,16 @@ pub struct Named {
     pub spectrum: Spectrum,
 }
 
+/// What was read.
+pub struct Input {
+    pub spectra: Vec<Named>,
+    /// Their values are radiance over a star's irradiance, 1/sr.
+    pub are_views: bool,
+}
+
 /// Spectra of a CSV file, or of standard input for None or `-`: a column `wavelength_nm`, rising, and one column
-/// a spectrum; lines that start with # are comments. Errors name file, line, column and value.
-pub fn read(path: Option<&Path>) -> Result<Vec<Named>> {
+/// a spectrum, or the columns of `tyndall sample`; lines that start with # are comments. Errors name file, line, column and value.
+pub fn read(path: Option<&Path>) -> Result<Input> {
     match path {
         Some(path) if path != Path::new("-") => parse(path, &input::text(path, MOST_CSV)?),
         _ => {
@@ -24,14 +32,15 @@ pub fn read(path: Option<&Path>) -> Result<Vec<Named>> {
 }
 
 /// [`read`] of a text; `file` is for messages only.
-pub fn parse(file: &Path, text: &str) -> Result<Vec<Named>> {
+pub fn parse(file: &Path, text: &str) -> Result<Input> {
     let mut reader =
         csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
     let header = reader.headers().map_err(|e| Error::file(file, e))?.clone();
-    let at = header
-        .iter()
-        .position(|h| h == "wavelength_nm")
-        .ok_or_else(|| Error::file(file, "column wavelength_nm is missing"))?;
+    let at =
+        header.iter().position(|h| h == "wavelength_nm").ok_or_else(|| without_wavelengths(file, &header))?;
+    if are_views(&header) {
+        return Ok(Input { spectra: views(file, reader)?, are_views: true });
+    }
     let mut columns: Vec<Vec<f64>> = vec![Vec::new(); header.len()];
     for record in reader.records() {
         let record = record.map_err(|e| Error::file(file, e))?;
@@ -50,11 +59,32 @@ pub fn parse(file: &Path, text: &str) -> Result<Vec<Named>> {
         .collect();
     match list {
         Ok(list) if list.is_empty() => Err(Error::file(file, "no column of values beside wavelength_nm")),
-        other => other,
+        Ok(spectra) => Ok(Input { spectra, are_views: false }),
+        Err(error) => Err(error),
     }
 }
 
-fn number(file: &Path, line: u64, column: &str, text: &str) -> Result<f64> {
+fn without_wavelengths(file: &Path, header: &csv::StringRecord) -> Error {
+    if header.iter().any(|h| h.starts_with("red_")) {
+        let mend = "sample a layout of wavelengths, as compact, or with --exact";
+        return Error::file(file, format!("linear RGB, which are colours already: {mend}"));
+    }
+    Error::file(file, "column wavelength_nm is missing")
+}
+
+/// The only spectrum of a CSV file.
+///
+/// # Errors
+/// As [`read`], and where there are more.
+pub fn one_spectrum(path: &Path) -> Result<Spectrum> {
+    let mut input = read(Some(path))?;
+    if input.are_views || input.spectra.len() != 1 {
+        return Err(Error::file(path, "wants the column wavelength_nm and one beside it"));
+    }
+    Ok(input.spectra.remove(0).spectrum)
+}
+
+pub fn number(file: &Path, line: u64, column: &str, text: &str) -> Result<f64> {
     match text.parse::<f64>() {
         Ok(v) if v.is_finite() => Ok(v),
         _ => Err(Error::Value {
@@ -90,7 +120,8 @@ mod tests {
     /// Columns are found by name, in any order; comments are skipped.
     #[test]
     fn columns_by_name() {
-        let list = parse(Path::new("s.csv"), "# a lamp\na,wavelength_nm,b\n1,400,5\n3,500,7\n").unwrap();
+        let list =
+            parse(Path::new("s.csv"), "# a lamp\na,wavelength_nm,b\n1,400,5\n3,500,7\n").unwrap().spectra;
         assert_eq!(list.iter().map(|n| n.name.as_str()).collect::<Vec<_>>(), ["a", "b"]);
         assert_eq!((list[0].spectrum.at(450.0), list[1].spectrum.at(450.0)), (2.0, 6.0));
     }

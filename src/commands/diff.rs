@@ -17,10 +17,10 @@ use std::path::{Path, PathBuf};
 #[command(
     about = "By how much two bakes differ, in their tables and on views, in radiance and ΔE2000; and why",
     before_help = "Example: tyndall diff out/earth out/earth --tolerance 1%",
-    after_help = "A difference of radiance is |b - a| over the larger of the two. Of stored texels it is relative to the larger
-of the two and to 1/10000 of the table's largest value at least, so that the dark of the night counts for what
-it is. ΔE2000 has white D65 and both colours scaled so that A's has Y = 0.18. Views are those of the report in
-bake.json: random, by regions, the same in every run.
+    after_help = "A difference of radiance is |b - a| over the larger of the two. Of stored texels it is relative to the \
+                  larger of the two and to 1/10000 of the table's largest value at least, so that the dark of the \
+                  night counts for what it is. ΔE2000 has white D65 and both colours scaled so that A's has Y = 0.18. \
+                  Views are those of the report in bake.json: random, by regions, the same in every run.
 Exit code 0: done; 1: a difference is beyond a tolerance; 2: no bakes to compare."
 )]
 pub struct Args {

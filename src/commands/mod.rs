@@ -4,6 +4,7 @@ pub mod bake;
 pub mod chart;
 pub mod colour;
 pub mod colour_input;
+pub mod colour_views;
 pub mod diff;
 mod machine;
 pub mod plan;

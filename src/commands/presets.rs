@@ -5,8 +5,9 @@ use super::presets_show::{as_json, as_text};
 use super::presets_water;
 use super::text::print;
 use crate::error::{Error, Result};
-use crate::preset;
+use crate::plan::load_waters;
 use crate::preset::schema::{Kind, schema};
+use crate::preset::{self, PresetKind};
 use std::path::{Path, PathBuf};
 
 /// List, show and check presets of planets and waters.
@@ -40,7 +41,7 @@ pub enum Action {
         #[arg(long, value_name = "path.to.key=value")]
         set: Vec<String>,
         /// Wavelengths in nm
-        #[arg(long, value_delimiter = ',', default_values_t = [400.0, 440.0, 550.0, 680.0, 750.0])]
+        #[arg(long, value_delimiter = ',', default_value = "400,440,550,680,750")]
         wavelengths: Vec<f64>,
         /// JSON with the whole resolved preset
         #[arg(long)]
@@ -136,13 +137,9 @@ fn check(paths: &[PathBuf]) -> Result<()> {
     }
     let mut bad = 0;
     for name in &names {
-        let found = match preset::is_water(name) {
-            true => preset::load_water(name, &[]).map(|w| (w.substances.len() - 1, w.warnings)),
-            false => preset::load(name, &[]).map(|p| (p.constituents.len(), p.warnings)),
-        };
-        match found {
-            Ok((count, warnings)) => {
-                print(&format!("ok   {name}: {count} constituents\n"))?;
+        match checked(name) {
+            Ok((what, warnings)) => {
+                print(&format!("ok   {name}: {what}\n"))?;
                 warnings.iter().for_each(|w| eprintln!("warning: {name}: {w}"));
             }
             Err(error) => {
@@ -157,6 +154,25 @@ fn check(paths: &[PathBuf]) -> Result<()> {
     match bad {
         0 => Ok(()),
         _ => Err(Error::Argument(format!("{bad} of {} presets do not hold", names.len()))),
+    }
+}
+
+/// Reads a preset of any kind, and what a scene names: what is in it, and warnings.
+fn checked(name: &str) -> Result<(String, Vec<String>)> {
+    let constituents = |count: usize| format!("{count} constituents");
+    match preset::kind(name) {
+        Some(PresetKind::Water) => {
+            preset::load_water(name, &[]).map(|w| (constituents(w.substances.len() - 1), w.warnings))
+        }
+        Some(PresetKind::Scene) => {
+            let scene = preset::load_scene(name)?;
+            let mut warnings = preset::load(&scene.planet, &[])?.warnings;
+            for water in load_waters(&scene)? {
+                warnings.extend(water.warnings);
+            }
+            Ok((format!("a scene of {}", scene.planet), warnings))
+        }
+        _ => preset::load(name, &[]).map(|p| (constituents(p.constituents.len()), p.warnings)),
     }
 }
 

@@ -16,10 +16,11 @@ use std::path::PathBuf;
 #[derive(clap::Args, Debug)]
 #[command(
     before_help = "Example: tyndall recolour out/earth --star 4000 --out out/recoloured",
-    after_help = "The layout compact stays as it is, bit for bit: it holds radiance over the star's irradiance at four wavelengths.
-Its matrices are fitted anew on the skies that the bake keeps in compact/skies.exr, at all wavelengths of the bake, as
-`tyndall bake` would, but for the choice of the four wavelengths, which stays. The layouts and waters whose tables hold
-colours (elek2010, water) are left out: bake them."
+    after_help = "The layout compact stays as it is, bit for bit: it holds radiance over the star's irradiance at four \
+                  wavelengths. Its matrices are fitted anew on the skies that the bake keeps in compact/skies.exr, at \
+                  all wavelengths of the bake, as `tyndall bake` would, but for the choice of the four wavelengths, \
+                  which stays. The layouts and waters whose tables hold colours (elek2010, water) are left out: bake \
+                  them."
 )]
 pub struct Args {
     /// Folder of a bake with the layout compact

@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::export::manifest::Manifest;
 use crate::medium::Medium;
 use crate::memory;
+use crate::names;
 use crate::points::{Answer, Point, read_points, write_answers};
 use crate::preset::Planet;
 use crate::sky::{AerosolPhase, Channels, Component, Sky};
@@ -133,7 +134,12 @@ fn layout(args: &Args, manifest: &Manifest) -> Result<String> {
     let has = |name: &str| manifest.tables.iter().any(|t| t.layout == name);
     match &args.layout {
         Some(name) if has(name) => Ok(name.clone()),
-        Some(name) => Err(Error::Argument(format!("--layout {name}: not in this bake"))),
+        Some(name) => {
+            let mut baked: Vec<&str> = manifest.tables.iter().map(|t| t.layout.as_str()).collect();
+            baked.dedup();
+            let known = names::known(name, baked);
+            Err(Error::Argument(format!("--layout {name}: not in this bake; {known}")))
+        }
         None if has("compact") => Ok("compact".into()),
         None => match manifest.tables.first() {
             Some(table) => Ok(table.layout.clone()),

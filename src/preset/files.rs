@@ -1,6 +1,6 @@
 //! Which files on disk a preset is read from, for those who bake again when one of them changes.
 
-use super::{changed, find, find_water, is_shipped, library, shipped_water_names};
+use super::{PresetKind, changed, find, is_shipped, library, shipped_water_names};
 use crate::error::Result;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// As [`super::load`].
 pub fn planet_files(name_or_path: &str, set: &[String]) -> Result<Vec<PathBuf>> {
-    let (file, text) = find(name_or_path)?;
+    let (file, text) = find(name_or_path, PresetKind::Planet)?;
     files(&file, &changed(&file, &text, set)?, !is_shipped(name_or_path))
 }
 
@@ -20,7 +20,7 @@ pub fn planet_files(name_or_path: &str, set: &[String]) -> Result<Vec<PathBuf>> 
 /// # Errors
 /// As [`super::load_water`].
 pub fn water_files(name_or_path: &str) -> Result<Vec<PathBuf>> {
-    let (file, text) = find_water(name_or_path)?;
+    let (file, text) = find(name_or_path, PresetKind::Water)?;
     let shipped = shipped_water_names().any(|name| name == name_or_path);
     files(&file, &changed(&file, &text, &[])?, !shipped)
 }

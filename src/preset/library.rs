@@ -88,6 +88,11 @@ pub fn shipped_water_names() -> impl Iterator<Item = &'static str> {
     WATERS.iter().map(|w| w.0)
 }
 
+/// Names of the shipped scenes.
+pub fn scene_names() -> impl Iterator<Item = &'static str> {
+    SCENES.iter().map(|s| s.0)
+}
+
 /// Name and one-line description of every shipped preset.
 pub fn shipped() -> Vec<(&'static str, String)> {
     PLANETS.iter().map(describe).collect()

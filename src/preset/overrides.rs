@@ -4,8 +4,9 @@
 //! `constituents.1`) or by their name (`constituents.aerosol`). The value is JSON, or a bare text where it is not;
 //! `null` takes the key or item away. Sources stay honest: the object changed says that it was.
 
-use super::raw::{bears_numbers, nearest};
+use super::raw::bears_numbers;
 use crate::error::{Error, Result};
+use crate::names::{nearest, quoted};
 use serde_json::{Map, Value};
 
 /// Applies one assignment. Errors: no `=`, a path that leads nowhere (with the nearest key that exists).
@@ -110,9 +111,11 @@ fn index(list: &[Value], step: &str) -> std::result::Result<usize, String> {
 }
 
 fn missing<'a>(step: &str, present: impl Iterator<Item = &'a str>) -> String {
-    match nearest(step, present) {
-        "" => format!("there is no `{step}`, and nothing beside it"),
-        nearest => format!("there is no `{step}`; the nearest is `{nearest}`"),
+    let present: Vec<&str> = present.collect();
+    match nearest(step, present.iter().copied()) {
+        _ if present.is_empty() => format!("there is no `{step}`, and nothing beside it"),
+        None => format!("there is no `{step}`; there are {}", quoted(present)),
+        Some(nearest) => format!("there is no `{step}`; the nearest is `{nearest}`"),
     }
 }
 

@@ -2,10 +2,14 @@
 
 use super::bounds::Bounds;
 use crate::error::{Error, Result};
+use crate::names::{self, nearest};
 use serde_json::{Map, Value};
 
 /// Longest length of a preset, m: more than the radius of the largest star.
 pub const MOST_METRES: f64 = 1e13;
+
+/// What is wrong with `"g": "0.76"`.
+pub const WITHOUT_QUOTES: &str = "a number in quotation marks is a text: write it without them";
 
 /// A JSON value, the file it stands in and the path to it (`constituents[1].phase.g`).
 #[derive(Clone, Debug)]
@@ -48,15 +52,14 @@ impl<'a> Raw<'a> {
         self.value.as_object().ok_or_else(|| self.refuse("must be an object { … }"))
     }
 
-    /// Refuses keys that are not known here, naming the nearest; `source` is known everywhere.
+    /// Refuses keys that are not known here, naming the nearest or all known; `source` is known everywhere.
     pub fn only(&self, known: &[&str]) -> Result<()> {
         #[cfg(test)]
         super::schema::record::note(known);
-        let known_here = || known.iter().copied().chain(["source"]);
+        let known_here = known.iter().copied().chain(["source"]);
         for (key, value) in self.map()? {
-            if !known_here().any(|k| k == key) {
-                let reason =
-                    format!("unknown key; the nearest known one is `{}`", nearest(key, known_here()));
+            if !known_here.clone().any(|k| k == key) {
+                let reason = format!("unknown key; {}", names::known(key, known_here));
                 return Err(self.child(key, value).refuse(reason));
             }
         }
@@ -68,12 +71,18 @@ impl<'a> Raw<'a> {
     }
 
     pub fn need(&self, key: &str) -> Result<Raw<'a>> {
-        self.get(key)?.ok_or_else(|| self.refuse(format!("`{key}` is missing")))
+        if let Some(found) = self.get(key)? {
+            return Ok(found);
+        }
+        let like = nearest(key, self.map()?.keys().map(String::as_str));
+        let meant = like.map_or(String::new(), |like| format!("; is `{like}` meant to be it?"));
+        Err(self.refuse(format!("`{key}` is missing{meant}")))
     }
 
     /// The only one of several alternative keys that is given, with its number in the list.
     pub fn one_of(&self, keys: &[&str]) -> Result<(usize, Raw<'a>)> {
-        self.at_most_one_of(keys)?.ok_or_else(|| self.refuse(format!("one of {} is missing", quoted(keys))))
+        self.at_most_one_of(keys)?
+            .ok_or_else(|| self.refuse(format!("one of {} is missing", names::quoted(keys.iter().copied()))))
     }
 
     /// The only one of several alternative keys, or none; two are refused.
@@ -82,7 +91,9 @@ impl<'a> Raw<'a> {
         for (k, key) in keys.iter().enumerate() {
             if let Some(raw) = self.get(key)? {
                 if found.is_some() {
-                    return Err(raw.refuse(format!("give only one of {}", quoted(keys))));
+                    return Err(
+                        raw.refuse(format!("give only one of {}", names::quoted(keys.iter().copied())))
+                    );
                 }
                 found = Some((k, raw));
             }
@@ -98,6 +109,11 @@ impl<'a> Raw<'a> {
         self.value.is_string()
     }
 
+    /// Whether it is a number in quotation marks, which JSON takes for a text.
+    pub fn is_quoted_number(&self) -> bool {
+        self.value.as_str().is_some_and(names::is_number)
+    }
+
     pub fn text(&self) -> Result<&'a str> {
         self.value.as_str().ok_or_else(|| self.refuse("must be a text"))
     }
@@ -110,11 +126,11 @@ impl<'a> Raw<'a> {
     pub fn choice(&self, choices: &[&str]) -> Result<usize> {
         let text = self.text()?;
         choices.iter().position(|c| *c == text).ok_or_else(|| {
-            let nearest = nearest(text, choices.iter().copied());
-            self.refuse(format!(
-                "unknown here; the nearest known one is `{nearest}`, all are {}",
-                quoted(choices)
-            ))
+            let all = names::quoted(choices.iter().copied());
+            self.refuse(match nearest(text, choices.iter().copied()) {
+                Some(near) => format!("unknown here; the nearest known one is `{near}`, all are {all}"),
+                None => format!("unknown here; known are {all}"),
+            })
         })
     }
 
@@ -122,6 +138,7 @@ impl<'a> Raw<'a> {
     pub fn number(&self) -> Result<f64> {
         match self.value.as_f64() {
             Some(v) if v.is_finite() => Ok(v),
+            _ if self.is_quoted_number() => Err(self.refuse(WITHOUT_QUOTES)),
             _ => Err(self.refuse("must be a finite number")),
         }
     }
@@ -202,22 +219,6 @@ pub fn bears_numbers(value: &Value) -> bool {
         Value::Array(list) => list.iter().any(bears_numbers),
         _ => false,
     }
-}
-
-/// The candidate most like a word: the least share of letters to change (Damerau–Levenshtein), the first of
-/// equals; "" where there is none.
-pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> &'a str {
-    // The comparison takes memory as the product of lengths, and the word may be a stranger's of megabytes.
-    let word: String = word.chars().take(MOST_COMPARED).collect();
-    let difference = |c: &&str| -strsim::normalized_damerau_levenshtein(&word, c);
-    candidates.into_iter().min_by(|a, b| difference(a).total_cmp(&difference(b))).unwrap_or("")
-}
-
-/// Letters of a word that are compared: more than any key has.
-const MOST_COMPARED: usize = 64;
-
-fn quoted(keys: &[&str]) -> String {
-    keys.iter().map(|k| format!("`{k}`")).collect::<Vec<_>>().join(", ")
 }
 
 /// JSON of a value on one short line.

@@ -2,8 +2,9 @@
 
 use super::bounds::{self, Bounds, NOT_NEGATIVE};
 use super::library;
-use super::raw::{Raw, nearest};
+use super::raw::{Raw, WITHOUT_QUOTES};
 use crate::error::Result;
+use crate::names;
 use crate::spectrum::{RANGE, Spectrum};
 
 /// What values a spectral quantity may take.
@@ -62,8 +63,14 @@ pub fn wavelengths(raw: &Raw) -> Result<Vec<f64>> {
 fn named(raw: &Raw, quantity: Quantity) -> Result<Spectrum> {
     let name = raw.text()?;
     let Some(spectrum) = library::spectrum(name, quantity.column, raw.file())? else {
-        let near = nearest(name, library::spectrum_names());
-        return Err(raw.refuse(format!("no shipped spectrum has this name; the nearest is `{near}`")));
+        if raw.is_quoted_number() {
+            return Err(raw.refuse(WITHOUT_QUOTES));
+        }
+        let known = match names::nearest(name, library::spectrum_names()) {
+            Some(near) => format!("the nearest is `{near}`"),
+            None => "a path must end in .csv".into(),
+        };
+        return Err(raw.refuse(format!("no shipped spectrum has this name; {known}")));
     };
     let (low, high) = spectrum.range();
     if !(quantity.bounds.hold(low) && quantity.bounds.hold(high)) {

@@ -6,7 +6,7 @@ use super::fournier_forand::{BACKSCATTER, fournier_forand};
 use super::phase::{KingFactor, PhaseLaw};
 use super::raw::Raw;
 use super::read_coefficient::coefficient;
-use super::read_phase::phase;
+use super::read_phase::{KINDS, phase};
 use super::read_planet::{SCHEMA_KEY, name, schema_key};
 use super::read_spectrum::{Quantity, SHARE, held, spectrum};
 use super::water::{Water, WaterLaw, WaterSubstance};
@@ -173,8 +173,8 @@ fn plankton_scattering(chlorophyll: f64) -> Coefficient {
 
 /// Phase functions of air's particles, and two of water's own.
 fn water_phase(raw: &Raw) -> Result<PhaseLaw> {
-    let kind = raw.need("kind")?;
-    match kind.text()? {
+    let kinds: Vec<&str> = KINDS.iter().copied().chain([FOURNIER_FORAND, MOLECULAR]).collect();
+    match kinds[raw.need("kind")?.choice(&kinds)?] {
         FOURNIER_FORAND => {
             raw.only(&["kind", "backscatter_fraction"])?;
             let fraction = raw.need("backscatter_fraction")?;

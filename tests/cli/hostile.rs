@@ -175,7 +175,7 @@ fn presets_of_a_million() {
         "are the most",
     );
     refused("name.json", &|m| m["name"] = json!("n".repeat(1 << 20)), "100 letters at most");
-    refused("key.json", &|m| m["k".repeat(8 << 20)] = json!("x"), "unknown key; the nearest known one is");
+    refused("key.json", &|m| m["k".repeat(8 << 20)] = json!("x"), "unknown key; known are `");
     let deep = dir.path().join("deep.json");
     fs::write(&deep, "[".repeat(1 << 20)).unwrap();
     super::hostile::refused(&["bake", deep.to_str().unwrap()], 2, "recursion limit exceeded");

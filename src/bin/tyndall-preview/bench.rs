@@ -4,6 +4,7 @@ use crate::bake::Bake;
 use crate::frame::{FrameUniform, View};
 use crate::gpu::Gpu;
 use crate::headless::pixels;
+use crate::held;
 use crate::options::Options;
 use crate::painter::{Look, Painter};
 use crate::resources::Method;
@@ -25,7 +26,9 @@ const STEPS: [u32; 22] =
 /// Prints the times of all methods that the layout has, or of the one that is asked for, their ratios, and the memory
 /// that each takes on the GPU.
 pub fn run(gpu: &Gpu, bake: &Bake, options: &Options) -> Result<()> {
-    let bench = Bench { gpu, bake, options, view: options.view(bake)?, stopwatch: Stopwatch::new(gpu) };
+    let view = options.view(bake)?;
+    held::warn_of(bake, &view);
+    let bench = Bench { gpu, bake, options, view, stopwatch: Stopwatch::new(gpu) };
     let [width, height] = bench.view.size;
     let (layout, frames, clock) = (bake.layout.name(), options.frames, bench.stopwatch.about());
     println!("{}, {layout}, {width}x{height}, {frames} frames, {clock}", gpu.name());

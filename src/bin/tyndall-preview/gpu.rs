@@ -18,8 +18,17 @@ const NO_ADAPTER: &str = "no GPU was found: install a Vulkan driver (software th
 
 /// The machine's fault, in one line.
 pub fn failed(what: impl ToString) -> Error {
+    Error::machine("GPU", io::Error::other(line(what)))
+}
+
+/// A reason in one line, without the place in another's source text that winit puts before it.
+pub fn line(what: impl ToString) -> String {
     let line = what.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
-    Error::machine("GPU", io::Error::other(line))
+    let Some((before, rest)) = line.split_once("os error at ") else { return line };
+    match rest.split_once(": ") {
+        Some((_, reason)) => format!("{before}{reason}"),
+        None => line,
+    }
 }
 
 impl Gpu {

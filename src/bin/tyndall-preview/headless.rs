@@ -4,6 +4,7 @@ use crate::bake::Bake;
 use crate::exposure;
 use crate::frame::{FrameUniform, View};
 use crate::gpu::Gpu;
+use crate::held;
 use crate::options::Options;
 use crate::painter::{Look, Painter};
 use crate::target::{SHOWN, Target};
@@ -14,6 +15,7 @@ use tyndall::{Error, Result};
 /// Draws the frame of the options and writes it as PNG.
 pub fn run(gpu: &Gpu, bake: &Bake, options: &Options, out: &Path) -> Result<()> {
     let view = options.view(bake)?;
+    held::warn_of(bake, &view);
     let look = options.look(bake, SHOWN)?;
     write_rgba(out, view.size, &pixels(gpu, bake, &view, &look)?)?;
     let [width, height] = view.size;

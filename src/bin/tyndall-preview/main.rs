@@ -11,6 +11,7 @@ mod exposure;
 mod frame;
 mod gpu;
 mod headless;
+mod held;
 mod options;
 mod painter;
 mod points;

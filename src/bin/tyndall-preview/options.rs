@@ -27,7 +27,7 @@ pub struct Options {
     #[arg(long)]
     pub headless: bool,
     /// Picture to write, PNG
-    #[arg(long, value_name = "PNG", requires = "headless")]
+    #[arg(long, value_name = "PNG", requires = "headless", value_parser = picture)]
     pub out: Option<PathBuf>,
     #[arg(long, default_value = "ground")]
     pub camera: Kind,
@@ -107,6 +107,18 @@ fn number(text: &str, low: f64, high: f64) -> std::result::Result<f64, String> {
     match text.parse() {
         Ok(v) if (low..=high).contains(&v) => Ok(v),
         _ => Err(format!("must be a number between {low} and {high}")),
+    }
+}
+
+/// A name of a picture that can be written: one that ends in .png, or in nothing.
+fn picture(text: &str) -> std::result::Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    match path.extension() {
+        Some(kind) if !kind.eq_ignore_ascii_case("png") => {
+            let better = path.with_extension("png");
+            Err(format!("only PNG can be written: name it {}", better.display()))
+        }
+        _ => Ok(path),
     }
 }
 

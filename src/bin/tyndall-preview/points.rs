@@ -2,6 +2,7 @@
 
 use crate::bake::Bake;
 use crate::gpu::Gpu;
+use crate::held;
 use crate::resources::{Baked, Method, look_ups, overrides, water_look_ups};
 use crate::sea::Sea;
 use std::io::Write;
@@ -26,6 +27,11 @@ pub fn run(
     let points = read_points(points)?;
     if bake.water.is_some() {
         points.iter().try_for_each(|p| WaterView::meet(bake.radii()[0], depth, p).map(|_| ()))?;
+    }
+    if bake.water.is_none()
+        && let Some(text) = held::beyond_points(bake, &points)
+    {
+        held::warn(&text);
     }
     let answers = answers(gpu, bake, &points, hand_filtered, depth)?;
     let channels = match &bake.water {

@@ -5,8 +5,9 @@ use crate::camera::{Camera, Kind};
 use crate::controls::{Controls, Request, TITLE_KEYS};
 use crate::exposure::{self, Exposure, factor};
 use crate::frame::{FrameUniform, View};
-use crate::gpu::{Gpu, failed};
+use crate::gpu::{Gpu, failed, line};
 use crate::headless::{pixels, write_rgba};
+use crate::held;
 use crate::options::Options;
 use crate::painter::{Look, Painter};
 use crate::resources::Method;
@@ -15,9 +16,10 @@ use crate::target::SHOWN;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant, SystemTime};
-use tyndall::Result;
 use tyndall::export::manifest::MANIFEST;
+use tyndall::{Error, Result};
 use winit::application::ApplicationHandler;
+use winit::error::EventLoopError;
 use winit::event::{ElementState, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::keyboard::PhysicalKey;
@@ -28,7 +30,7 @@ use winit::window::{Window, WindowId};
 /// # Errors
 /// `Machine` where there is no display, no GPU, or the GPU is lost.
 pub fn run(options: &Options, bake: Bake) -> Result<()> {
-    let events = EventLoop::new().map_err(failed)?;
+    let events = EventLoop::new().map_err(no_display)?;
     events.set_control_flow(ControlFlow::Poll);
     let view = options.view(&bake)?;
     let method = options.method(&bake)?;
@@ -48,10 +50,17 @@ pub fn run(options: &Options, bake: Bake) -> Result<()> {
         exposed: None,
         looked: Instant::now(),
         shots: 0,
+        beyond: None,
         failure: None,
     };
     events.run_app(&mut app).map_err(failed)?;
     app.failure.map_or(Ok(()), Err)
+}
+
+/// Without a display there can be no window.
+fn no_display(reason: EventLoopError) -> Error {
+    let reason = format!("no window: {}; --headless --out PNG needs no display", line(reason));
+    Error::machine("display", std::io::Error::other(reason))
 }
 
 /// The window and what draws into it.
@@ -80,7 +89,9 @@ struct App {
     looked: Instant,
     written: Option<SystemTime>,
     shots: u32,
-    failure: Option<tyndall::Error>,
+    /// What the tables did not hold of the last frame, told once.
+    beyond: Option<&'static str>,
+    failure: Option<Error>,
 }
 
 /// The deepest water that can be shown, m; 0 of land.
@@ -207,6 +218,18 @@ impl App {
         }
     }
 
+    /// Warns where the view leaves what the tables hold, once until it is back.
+    fn tell_beyond(&mut self, view: &View) {
+        let aspect = f64::from(view.size[0]) / f64::from(view.size[1]);
+        let found = held::beyond(&self.bake, &view.camera, aspect);
+        if let Some((key, text)) = &found
+            && self.beyond != Some(*key)
+        {
+            held::warn(text);
+        }
+        self.beyond = found.map(|(key, _)| key);
+    }
+
     fn view(&mut self, size: [u32; 2]) -> View {
         let exposure = self.exposure(f64::from(size[0]) / f64::from(size[1]));
         let c = &self.controls;
@@ -258,6 +281,9 @@ impl App {
         }
         let view = self.view(size);
         let title = self.new_title(&view, dt);
+        if title.is_some() {
+            self.tell_beyond(&view);
+        }
         let uniform = FrameUniform::new(&self.bake, &view);
         let bake = &self.bake;
         let Some(shown) = &mut self.shown else { return Ok(()) };

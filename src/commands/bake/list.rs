@@ -1,9 +1,10 @@
 //! `--list` and `--shard`: which of many planets this process bakes.
 
 use super::Args;
+use super::progress::Progress;
 use crate::error::{Error, Result};
 use crate::input::{self, MOST_CSV};
-use crate::preset;
+use crate::preset::{self, Planet};
 use std::path::Path;
 
 /// A part of a list: every `of`th planet from the `number`th, counted from 1.
@@ -34,6 +35,28 @@ pub fn asked(args: &Args) -> Result<Vec<String>> {
     };
     let Some(Shard { number, of }) = args.shard else { return Ok(all) };
     Ok(all.into_iter().skip(number - 1).step_by(of).collect())
+}
+
+/// Names that nobody knows, paths at which nothing is, and keys of --set that lead nowhere are slips of who typed them:
+/// nothing is written then. A file with something wrong in it stops no other.
+pub fn refuse_unknown(asked: &[String], planets: &[Result<Planet>], progress: &Progress) -> Result<()> {
+    let slip = |(planet, asked): (&Result<Planet>, &String)| match planet {
+        Err(error @ Error::Argument(_)) => Some(error.to_string()),
+        Err(error) if error.exit_code() == 2 && preset::check_known(asked).is_err() => {
+            Some(error.to_string())
+        }
+        _ => None,
+    };
+    let slips: Vec<String> = planets.iter().zip(asked).filter_map(slip).collect();
+    match slips.as_slice() {
+        [] => Ok(()),
+        [one] if asked.len() == 1 => Err(Error::Argument(one.clone())),
+        several => {
+            several.iter().for_each(|slip| progress.always(&format!("error: {slip}")));
+            let (bad, of) = (several.len(), asked.len());
+            Err(Error::Argument(format!("{bad} of {of} presets were refused; nothing was baked")))
+        }
+    }
 }
 
 fn read(file: &Path) -> Result<Vec<String>> {

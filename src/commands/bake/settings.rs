@@ -9,6 +9,7 @@ use crate::bake::water::Waters;
 use crate::error::{Error, Result};
 use crate::export::container::Container;
 use crate::methods::literal::Gather;
+use crate::names;
 use crate::plan::{Effort, plan};
 use crate::preset::{self, Planet, Scene, Tolerance};
 use crate::spectrum::Rgb;
@@ -131,13 +132,27 @@ pub fn settings(args: &Args) -> Result<(Settings, Sized)> {
                 return Err(Error::Argument(format!("--size {text}: {fixed}")));
             }
             other => {
+                let near =
+                    names::nearest(other, SIZED).map_or(String::new(), |n| format!("; the nearest is `{n}`"));
                 let known = "elek2010, compact, compact-single, compact-transmittance or water";
-                return Err(Error::Argument(format!("--size {text}: {other} is not one of {known}")));
+                return Err(Error::Argument(format!("--size {text}: {other} is not one of {known}{near}")));
             }
         }
     }
     Ok((settings, sized))
 }
+
+/// Constituents of --fold that a planet of the run has not, before anything of another is written.
+pub fn check_folded(settings: &Settings, planets: &[Result<Planet>]) -> Result<()> {
+    for planet in planets.iter().flatten() {
+        let medium = planet.medium(&settings.wavelengths_nm);
+        settings.compact.folded.iter().try_for_each(|name| crate::bake::check_folded(&medium, name))?;
+    }
+    Ok(())
+}
+
+/// What --size can be given for.
+const SIZED: [&str; 5] = ["elek2010", "compact", "compact-single", "compact-transmittance", "water"];
 
 /// Options that leave out parts of tables which other options need.
 fn refuse_parts(args: &Args, settings: &Settings) -> Result<()> {

@@ -2,6 +2,7 @@
 
 use super::super::text::print;
 use super::progress::Stage;
+use crate::bake::settings::Layout;
 use crate::error::{Error, Result};
 use crate::memory;
 use serde_json::{Map, Value, json};
@@ -52,21 +53,20 @@ impl Done {
             }
         };
         let regions = |key: &str| self.quality.get(key).and_then(Value::as_object).into_iter().flatten();
-        regions("compact_against_direct_integration")
-            .for_each(|(region, found)| look("compact", region, &found["per_wavelength"]));
-        regions("elek2010_against_its_own_medium")
-            .for_each(|(region, found)| look("elek2010", region, found));
+        for layout in Layout::ALL {
+            let found = |(region, found): (&String, &Value)| {
+                look(layout.name(), region, found.get("per_wavelength").unwrap_or(found));
+            };
+            regions(layout.report_key()).for_each(found);
+        }
         regions("water").for_each(|(water, found)| look("water", water, &found["tables_against_solver"]));
         worst
     }
 
     /// Error of a layout's tables by day, below which 95 % of the report's views lie.
-    fn by_day(&self, layout: &str) -> Option<f64> {
-        let found = match layout {
-            "compact" => &self.quality.get("compact_against_direct_integration")?["day"]["per_wavelength"],
-            _ => &self.quality.get("elek2010_against_its_own_medium")?["day"],
-        };
-        found["p95"].as_f64()
+    fn by_day(&self, layout: Layout) -> Option<f64> {
+        let found = &self.quality.get(layout.report_key())?["day"];
+        found.get("per_wavelength").unwrap_or(found)["p95"].as_f64()
     }
 
     /// Error of the energy balance of the medium as it is, or else of the paper's; none where orders were counted.
@@ -147,36 +147,53 @@ fn times(stages: &[Stage]) -> String {
 
 fn table(outcomes: &[Outcome]) -> String {
     let width = outcomes.iter().map(|o| o.name.chars().count()).max().unwrap_or(0).max("preset".len());
+    let layouts = shown(outcomes);
+    let heads: String = layouts.iter().map(|l| format!("{:>8}  ", l.name())).collect();
     let mut out = format!(
-        "{:width$}  {:>5}  {:>6}  {:>8}  {:>8}  {:>9}  {:>8}  outcome\n",
-        "preset", "files", "MB", "compact", "elek2010", "balance", "warnings"
+        "{:width$}  {:>5}  {:>6}  {heads}{:>9}  {:>8}  outcome\n",
+        "preset", "files", "MB", "balance", "warnings"
     );
     for o in outcomes {
         let line = match &o.result {
-            Ok(done) => row(done),
+            Ok(done) => row(done, &layouts),
             Err(e) => {
                 let dash = "-";
-                format!("{dash:>5}  {dash:>6}  {dash:>8}  {dash:>8}  {dash:>9}  {dash:>8}  failed: {e}")
+                let dashes: String = layouts.iter().map(|l| cell(*l, dash)).collect();
+                format!("{dash:>5}  {dash:>6}  {dashes}{dash:>9}  {dash:>8}  failed: {e}")
             }
         };
         out.push_str(&format!("{:width$}  {line}\n", o.name));
     }
-    out.push_str(
-        "compact, elek2010: error of their tables by day, below which 95 % of views lie; balance: energy lost or won\n",
-    );
+    let names: Vec<&str> = layouts.iter().map(|l| l.name()).collect();
+    out.push_str(&format!(
+        "{}: error of their tables by day, below which 95 % of views lie; balance: energy lost or won\n",
+        names.join(", ")
+    ));
     out
 }
 
-fn row(done: &Done) -> String {
-    let or_dash = |share: Option<f64>| share.map_or("-".into(), percent);
-    let (compact, elek2010) = (or_dash(done.by_day("compact")), or_dash(done.by_day("elek2010")));
+/// Layouts that have a column: the two of a bake that asks for none, and whichever a bake has.
+fn shown(outcomes: &[Outcome]) -> Vec<Layout> {
+    let usual = [Layout::Compact, Layout::Elek2010];
+    let bakes = || outcomes.iter().filter_map(|o| o.result.as_ref().ok());
+    let has = |layout: &Layout| bakes().any(|done| done.by_day(*layout).is_some());
+    Layout::ALL.into_iter().filter(|layout| usual.contains(layout) || has(layout)).collect()
+}
+
+/// A cell below the name of a layout.
+fn cell(layout: Layout, text: &str) -> String {
+    let width = layout.name().len().max(8);
+    format!("{text:>width$}  ")
+}
+
+fn row(done: &Done, layouts: &[Layout]) -> String {
+    let of = |layout: &Layout| cell(*layout, &done.by_day(*layout).map_or("-".into(), percent));
+    let errors: String = layouts.iter().map(of).collect();
     let balance = done.balance().map_or("-".into(), |b| format!("{:+.3} %", 100.0 * b));
     let megabytes = done.bytes as f64 / 1e6;
     let (files, warnings, folder) = (done.files, done.warnings.len(), done.folder.display());
     let reused = if done.reused { " (there already)" } else { "" };
-    format!(
-        "{files:>5}  {megabytes:>6.1}  {compact:>8}  {elek2010:>8}  {balance:>9}  {warnings:>8}  {folder}{reused}"
-    )
+    format!("{files:>5}  {megabytes:>6.1}  {errors}{balance:>9}  {warnings:>8}  {folder}{reused}")
 }
 
 /// A share in per cent; what is beyond all use as such.
@@ -198,6 +215,39 @@ pub fn failure(outcomes: Vec<Outcome>) -> Result<()> {
         (failed, _) => {
             let code = errors.iter().map(Error::exit_code).max().unwrap_or(3);
             Err(Error::Several { failed, of, code })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn done(layout: Layout) -> Done {
+        let error = match layout {
+            Layout::Compact => json!({ "day": { "per_wavelength": { "max": 0.7, "p95": 0.25 } } }),
+            _ => json!({ "day": { "max": 0.7, "p95": 0.25 } }),
+        };
+        let mut done = Done::nothing(PathBuf::from("out/x"));
+        done.quality.insert(layout.report_key().into(), error);
+        done
+    }
+
+    /// The worst error of a bake is found in whichever layout it has, and the table of several has its column.
+    #[test]
+    fn every_layout_is_summed_up() {
+        for layout in Layout::ALL {
+            let worst = done(layout).worst().unwrap();
+            assert_eq!(
+                (worst.error, worst.layout.as_str(), worst.region.as_str()),
+                (0.7, layout.name(), "day")
+            );
+            let outcome = Outcome { name: "x".into(), result: Ok(done(layout)) };
+            let text = table(&[outcome]);
+            let lines: Vec<&str> = text.lines().collect();
+            assert!(lines[0].contains(layout.name()) && lines[1].contains("25.0 %"), "{text}");
+            let end = |line: &str, word: &str| line.find(word).map(|at| at + word.len());
+            assert_eq!(end(lines[0], layout.name()), end(lines[1], "25.0 %"), "{text}");
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Bake, ViewDifference};
 use crate::bake::report::DARK;
+use crate::bake::settings::Layout;
 use crate::error::{Error, Result};
 use crate::points::Point;
 use crate::quality::{Distribution, REGIONS, Region, views};
@@ -12,7 +13,7 @@ use rayon::prelude::*;
 /// Every layout that both bakes have and that this tool can answer from, region by region.
 pub fn compare(a: &Bake, b: &Bake, count: usize) -> Result<Vec<ViewDifference>> {
     let mut out = Vec::new();
-    for layout in ["compact", "elek2010"] {
+    for layout in Layout::ALL.map(Layout::name) {
         let has = |bake: &Bake| bake.manifest.tables.iter().any(|t| t.layout == layout);
         if !(has(a) && has(b)) {
             continue;

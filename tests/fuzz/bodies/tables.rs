@@ -19,7 +19,7 @@ pub fn spectra(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     match colour_input::parse(file(), text) {
         Err(error) => refused(&error),
-        Ok(list) => assert!(list.iter().all(|s| s.spectrum.at(550.0).is_finite())),
+        Ok(list) => assert!(list.spectra.iter().all(|s| s.spectrum.at(550.0).is_finite())),
     }
 }
 
