@@ -10,8 +10,7 @@ use std::collections::BTreeMap;
 /// The versions of all that this program can bake: `solver` (with all that every bake shares: spectra, colours, report,
 /// pictures), a layout, `water`.
 pub fn all() -> BTreeMap<String, u32> {
-    let layouts =
-        [Layout::Elek2010, Layout::Compact, Layout::ThreeAtmosphere].map(|l| (l.name(), of_layout(l)));
+    let layouts = Layout::ALL.map(|layout| (layout.name(), of_layout(layout)));
     let rest = [(SOLVER, transport::ALGORITHM_VERSION), (water::LAYOUT, water::ALGORITHM_VERSION)];
     layouts.into_iter().chain(rest).map(|(name, version)| (name.to_string(), version)).collect()
 }

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use tyndall::bake::settings::Layout;
 use tyndall::bake::versions;
 
 /// Which bakes: what each holds that no other does. Their options come after those of [`SMALL`].
@@ -114,8 +115,7 @@ fn changed(old: &Hashes, new: &Hashes) -> BTreeMap<String, BTreeSet<String>> {
             found.entry(algorithm.into()).or_default().insert(name.clone());
         }
     }
-    let layouts = ["elek2010", "compact", "three-atmosphere"];
-    if layouts.iter().all(|layout| found.contains_key(*layout)) {
+    if Layout::ALL.iter().all(|layout| found.contains_key(layout.name())) {
         let bakes = std::mem::take(&mut found).into_values().flatten().collect();
         found.insert(versions::SOLVER.into(), bakes);
     }
