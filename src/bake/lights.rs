@@ -6,7 +6,7 @@ use crate::transport::solve::{Orders, Resolution, Solution};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// Solutions of the bakes before, the last [`MOST`].
+/// Solutions of the bakes before, the last `MOST`.
 #[derive(Default)]
 pub struct Lights {
     kept: Mutex<Vec<Kept>>,

@@ -147,12 +147,13 @@ fn warn_of_held_ends(spectra: &[Named]) {
 /// RGB and L* far beyond white are no colours that anybody sees: the unit is not what the scale counts in.
 fn warn_of_brightness(args: &Args, colours: &[Colour]) {
     let white = white_y(args);
-    for c in colours.iter().filter(|c| c.xyz[1] > 10.0 * white) {
-        let (name, y) = (&c.name, number(c.xyz[1]));
-        talk(&format!(
-            "warning: {name}: Y = {y}, but white is Y = {white}: RGB and L* count from there; see --white-y"
-        ));
-    }
+    let bright: Vec<&Colour> = colours.iter().filter(|c| c.xyz[1] > 10.0 * white).collect();
+    let Some(first) = bright.first() else { return };
+    let more = if bright.len() > 1 { format!(" and {} more", bright.len() - 1) } else { String::new() };
+    let (name, y) = (&first.name, number(first.xyz[1]));
+    talk(&format!(
+        "warning: {name}{more}: Y = {y}, but white is Y = {white}: RGB and L* count from there; see --white-y"
+    ));
 }
 
 /// The Y that is white.

@@ -14,7 +14,7 @@ impl<F: Fn([f64; 3]) -> Option<[f64; 3]> + Sync> Radiance for F {}
 pub enum Exposure {
     Fixed(f64),
     /// Four fifths of the pixels end below 0.7 (linear); rounded to two digits, so that a label can state it. No more
-    /// than [`MOST`].
+    /// than `MOST`.
     Auto,
 }
 

@@ -1,7 +1,7 @@
 //! The methods of the field behind one trait, for the chart of accuracy against cost: what each prepares for a planet,
 //! what it then answers at a view, and what both cost.
 //!
-//! The older methods know three wavelengths and take radiance there for red, green and blue ([`air`]); they are held
+//! The older methods know three wavelengths and take radiance there for red, green and blue (`air`); they are held
 //! against the same medium as ours, absorption included, which their authors left out. Where a method was published
 //! with a solver of its own that ours stands in for, its file says so: then its error is that of its tables alone.
 

@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 pub const MOST_METRES: f64 = 1e13;
 
 /// What is wrong with `"g": "0.76"`.
-pub const WITHOUT_QUOTES: &str = "a number in quotation marks is a text: write it without them";
+pub const WITHOUT_QUOTES: &str = "must be a finite number; quotation marks make it a text";
 
 /// A JSON value, the file it stands in and the path to it (`constituents[1].phase.g`).
 #[derive(Clone, Debug)]

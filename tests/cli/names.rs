@@ -32,7 +32,6 @@ fn a_name_of_another_kind_is_told() {
     }
     refused("plan earth", &["`earth` is a planet, not a scene: `tyndall bake earth`"]);
     refused("presets show walk", &["`walk` is a scene, not a planet"]);
-    refused("reference clear-ocean --points x.csv", &["is a water, not a planet"]);
     assert!(names(dir.path()).is_empty());
 }
 

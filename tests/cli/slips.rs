@@ -69,7 +69,7 @@ fn numbers_as_text_are_called_so() {
     ] {
         let text = told(pointer, json!(value));
         assert!(
-            text.contains("a number in quotation marks is a text: write it without them"),
+            text.contains("must be a finite number; quotation marks make it a text"),
             "{pointer}: {text}"
         );
     }
