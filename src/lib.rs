@@ -31,6 +31,7 @@ pub mod lanes;
 pub mod medium;
 pub mod memory;
 pub mod methods;
+pub mod output;
 pub mod plan;
 pub mod points;
 pub mod preset;

@@ -13,8 +13,11 @@ mod cli {
     mod farm;
     mod help;
     mod hostile;
+    mod kept;
+    mod limits;
     mod many;
     mod media;
+    mod opened;
     mod options;
     mod places;
     mod points;
@@ -24,6 +27,7 @@ mod cli {
     mod round_trip;
     mod run;
     mod same_bytes;
+    mod spoken;
     mod stopped;
     mod windows;
 }

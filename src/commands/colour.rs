@@ -1,7 +1,7 @@
 //! `tyndall colour`: spectra to XYZ, chromaticity, linear RGB and CIELAB.
 
 use super::colour_input::{Named, black_body, read};
-use super::text::{number, print};
+use super::text::{number, print, say};
 use crate::error::Result;
 use crate::spectrum::*;
 use std::collections::BTreeMap;
@@ -118,10 +118,10 @@ fn warn_of_held_ends(spectra: &[Named]) {
     let (from, to) = OBSERVER_RANGE;
     for s in spectra {
         if let Some((first, last)) = s.spectrum.held_outside(from as f64, to as f64) {
-            eprintln!(
+            say(&format!(
                 "warning: {} covers {first}–{last} nm; its end values are held over {from}–{to} nm",
                 s.name
-            );
+            ));
         }
     }
 }

@@ -18,3 +18,5 @@ pub mod sample;
 mod sample_water;
 mod text;
 pub mod verify;
+
+pub use machine::share_threads;

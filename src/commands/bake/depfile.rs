@@ -1,8 +1,9 @@
 //! `--depfile`: which files a bake depends on, in the syntax that make and ninja read.
 
 use super::Args;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::export::manifest::MANIFEST;
+use crate::export::whole;
 use crate::preset::{self, Planet};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -25,7 +26,7 @@ pub fn write(args: &Args, asked: &[String], planets: &[Option<String>]) -> Resul
         needs.extend(common.iter().cloned());
         text.push_str(&rule(&args.out.join(name).join(MANIFEST), &needs));
     }
-    std::fs::write(file, text).map_err(|e| Error::machine(file, e))
+    whole::write(file, text.as_bytes())
 }
 
 /// Names of the planets that could be read.
