@@ -3,9 +3,10 @@
 
 use crate::error::{Error, Result};
 use crate::memory;
-use std::fs::{self, File};
-use std::io::{self, Read};
-use std::path::{Component, Path};
+use std::fs::{self, File, Metadata, OpenOptions};
+use std::io::{self, Cursor, Read};
+use std::path::{Component, Path, PathBuf};
+use std::time::{Duration, Instant};
 
 /// Bytes of a JSON file at most. In memory it takes some forty times as much where it is all short numbers; the largest
 /// preset that is shipped has 30 kB.
@@ -20,8 +21,41 @@ const BYTE_ORDER_MARK: &str = "\u{feff}";
 /// # Errors
 /// `File` for a missing or too long one, or one that is no text.
 pub fn text(path: &Path, most: u64) -> Result<String> {
-    let file = File::open(path).map_err(|e| Error::reading(path, e))?;
-    text_of(path, file, most)
+    text_of(path, open(path)?, most)
+}
+
+/// A file that the user named, from its beginning: also a pipe, as soon as somebody writes to it.
+///
+/// # Errors
+/// `File` for a missing one, and for a pipe that nobody opens to write to.
+pub fn open(path: &Path) -> Result<impl Read> {
+    begun(path).map_err(|e| Error::reading(path, e))
+}
+
+fn begun(path: &Path) -> io::Result<impl Read> {
+    let mut file = system::at_once(File::options().read(true)).open(path)?;
+    let first = if system::is_pipe(&file.metadata()?) { first_bytes(&mut file)? } else { Vec::new() };
+    system::wait_again(&file)?;
+    Ok(Cursor::new(first).chain(file))
+}
+
+/// How long a pipe may be without anybody at its other end: shells open it before they start a program.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// The first bytes of a pipe, none where its writer has none yet.
+fn first_bytes(pipe: &mut File) -> io::Result<Vec<u8>> {
+    let start = Instant::now();
+    let mut buffer = [0; 4096];
+    while start.elapsed() < PATIENCE {
+        match pipe.read(&mut buffer) {
+            Ok(0) => std::thread::sleep(Duration::from_millis(10)),
+            Ok(count) => return Ok(buffer[..count].to_vec()),
+            Err(e) if e.kind() == io::ErrorKind::WouldBlock => return Ok(Vec::new()),
+            Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
+            Err(e) => return Err(e),
+        }
+    }
+    Err(invalid("a pipe that nobody writes to"))
 }
 
 /// The same of a stream; `path` is for messages only.
@@ -53,19 +87,28 @@ pub fn text_of(path: &Path, stream: impl Read, most: u64) -> Result<String> {
 /// # Errors
 /// As [`text`].
 pub fn named_text(path: &Path, most: u64) -> Result<String> {
-    let file = regular(path).map_err(|e| Error::reading(path, e))?;
+    let file = regular(path, File::options().read(true)).map_err(|e| Error::reading(path, e))?;
     text_of(path, file, most)
+}
+
+/// The text of a file inside a bake, by its path there.
+///
+/// # Errors
+/// As [`text`], and for a link that leads out of the bake.
+pub fn part_text(folder: &Path, file: &str, most: u64) -> Result<String> {
+    let path = folder.join(file);
+    let real = place(folder, file).map_err(|e| Error::reading(&path, e))?;
+    let file = regular(&real, File::options().read(true)).map_err(|e| Error::reading(&path, e))?;
+    text_of(&path, file, most)
 }
 
 /// The bytes of a file inside a bake, by its path there.
 ///
 /// # Errors
-/// Of kind `InvalidData` for a path that leads out of the bake, and for what is no file or does not fit into memory.
+/// Of kind `InvalidData` for a path or link that leads out of the bake, and for what is no file or does not fit into
+/// memory.
 pub fn part(folder: &Path, file: &str) -> io::Result<Vec<u8>> {
-    if !is_inside(file) {
-        return Err(invalid("the manifest points outside the bake"));
-    }
-    let mut from = regular(&folder.join(file))?;
+    let mut from = regular(&place(folder, file)?, File::options().read(true))?;
     let length = from.metadata()?.len();
     memory::check(length).map_err(|reason| invalid(&reason))?;
     let mut bytes = Vec::with_capacity(length as usize);
@@ -78,15 +121,69 @@ pub fn is_inside(file: &str) -> bool {
     !file.is_empty() && Path::new(file).components().all(|c| matches!(c, Component::Normal(_)))
 }
 
-fn regular(path: &Path) -> io::Result<File> {
-    let found = fs::metadata(path)?;
-    if found.is_dir() {
-        return Err(io::ErrorKind::IsADirectory.into());
+/// Where a file of a bake really is, links on the way followed.
+fn place(folder: &Path, file: &str) -> io::Result<PathBuf> {
+    if !is_inside(file) {
+        return Err(invalid("the manifest points outside the bake"));
     }
-    if !found.is_file() {
-        return Err(invalid("not a file but a device, pipe or socket"));
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let (root, real) = (fs::canonicalize(folder)?, fs::canonicalize(folder.join(file))?);
+    if real.starts_with(root) { Ok(real) } else { Err(invalid("a link that leads out of the bake")) }
+}
+
+/// A file that is no pipe, device or folder, opened with `options`: never waits for somebody at the other end.
+pub fn regular(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
+    refuse_others(&fs::metadata(path)?)?;
+    // Something else may have come into its place since.
+    let file = system::at_once(options).open(path)?;
+    refuse_others(&file.metadata()?)?;
+    Ok(file)
+}
+
+fn refuse_others(found: &Metadata) -> io::Result<()> {
+    match found.is_file() {
+        true => Ok(()),
+        false if found.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
+        false => Err(invalid("not a file but a device, pipe or socket")),
     }
-    File::open(path)
+}
+
+#[cfg(unix)]
+pub(crate) mod system {
+    use super::{File, Metadata, OpenOptions, io};
+    use rustix::fs::{OFlags, fcntl_getfl, fcntl_setfl};
+    use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
+
+    pub fn is_pipe(found: &Metadata) -> bool {
+        found.file_type().is_fifo()
+    }
+
+    /// Opens without waiting for the other end of a pipe.
+    pub fn at_once(options: &mut OpenOptions) -> &mut OpenOptions {
+        options.custom_flags(OFlags::NONBLOCK.bits() as i32)
+    }
+
+    /// From here on reads wait for bytes.
+    pub fn wait_again(file: &File) -> io::Result<()> {
+        Ok(fcntl_setfl(file, fcntl_getfl(file)? - OFlags::NONBLOCK)?)
+    }
+}
+
+#[cfg(not(unix))]
+pub(crate) mod system {
+    use super::{File, Metadata, OpenOptions, io};
+
+    pub fn is_pipe(_: &Metadata) -> bool {
+        false
+    }
+
+    pub fn at_once(options: &mut OpenOptions) -> &mut OpenOptions {
+        options
+    }
+
+    pub fn wait_again(_: &File) -> io::Result<()> {
+        Ok(())
+    }
 }
 
 fn invalid(reason: &str) -> io::Error {

@@ -32,6 +32,7 @@ pub mod medium;
 pub mod memory;
 pub mod methods;
 pub mod names;
+pub mod output;
 pub mod plan;
 pub mod points;
 pub mod preset;

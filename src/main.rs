@@ -1,8 +1,13 @@
 //! Arguments → command → exit code.
 
 use clap::Parser;
-use std::io::Write;
+use tyndall::commands::share_threads;
 use tyndall::commands::{bake, chart, colour, diff, plan, presets, recolour, reference, sample, verify};
+use tyndall::export::interrupt::handle_interrupts;
+use tyndall::output;
+
+#[global_allocator]
+static MEMORY: tyndall::memory::Allocator = tyndall::memory::Allocator;
 
 /// Offline baker of lookup tables for planetary atmospheres
 #[derive(Parser)]
@@ -22,19 +27,32 @@ enum Command {
 }
 
 fn main() -> std::process::ExitCode {
-    let command = Command::parse();
-    let result = tyndall::export::interrupt::handle_interrupts().and_then(|()| run(command));
+    let result = match Command::try_parse() {
+        Ok(command) => handle_interrupts().and_then(|()| run(command)).and_then(|()| output::heard()),
+        Err(error) => output::refused(&error),
+    };
     match result {
         Ok(()) => std::process::ExitCode::SUCCESS,
         Err(error) => {
-            // Not eprintln, which panics where nobody reads stderr: the exit code would be lost.
-            let _ = writeln!(std::io::stderr(), "error: {error}");
+            output::say(&format!("error: {error}"));
             error.exit_code().into()
         }
     }
 }
 
+impl Command {
+    /// The threads of a command that has no `--threads`; where there are none to be had, that is an error, not a panic.
+    fn threads(&self) -> tyndall::Result<()> {
+        match self {
+            Command::Bake(_) | Command::Plan(_) | Command::Chart(_) => Ok(()),
+            Command::Sample(_) | Command::Reference(_) => Ok(()),
+            _ => share_threads(None),
+        }
+    }
+}
+
 fn run(command: Command) -> tyndall::Result<()> {
+    command.threads()?;
     match command {
         Command::Bake(args) => bake::run(&args),
         Command::Sample(args) => sample::run(&args),

@@ -1,17 +1,21 @@
 //! Memory: how much the machine has left, and amounts as people write them.
 
+mod allocator;
+mod groups;
+mod limits;
+
+pub use allocator::Allocator;
+
 use std::path::Path;
 
-/// Bytes that can still be had without swapping: of the machine, or of the container where that is less. None
-/// where the system does not say.
+/// Bytes that can still be had without swapping: of the machine, of the control groups or of the limits of this process
+/// where that is less. None where the system does not say.
 pub fn available() -> Option<u64> {
-    let machine = read("/proc/meminfo").and_then(|text| of_meminfo(&text));
-    let groups = [
-        ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"),
-        ("/sys/fs/cgroup/memory/memory.limit_in_bytes", "/sys/fs/cgroup/memory/memory.usage_in_bytes"),
-    ];
-    let left = |(most, used): &(&str, &str)| of_group(&read(most)?, &read(used)?);
-    machine.into_iter().chain(groups.iter().filter_map(left)).min()
+    [machine(), groups::left(), limits::left()].into_iter().flatten().min()
+}
+
+fn machine() -> Option<u64> {
+    of_meminfo(&read("/proc/meminfo")?)
 }
 
 fn read(path: impl AsRef<Path>) -> Option<String> {
@@ -22,11 +26,6 @@ fn read(path: impl AsRef<Path>) -> Option<String> {
 fn of_meminfo(text: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
-}
-
-/// What a control group has left; none where its limit is "max".
-fn of_group(most: &str, used: &str) -> Option<u64> {
-    Some(most.trim().parse::<u64>().ok()?.saturating_sub(used.trim().parse().ok()?))
 }
 
 const UNITS: [(&str, f64); 8] = [
@@ -61,15 +60,18 @@ pub fn shown(bytes: u64) -> String {
 
 /// What a program may take without asking, bytes: any machine has as much.
 const SMALL: u64 = 256 << 20;
+/// The same of a control group, which swaps or is killed.
+const TRIFLE: u64 = 16 << 20;
 
 /// Whether so many bytes can be had now; the reason why not. Asked before anything of a size is made that a stranger's
 /// file or a slip of the pen decides.
 pub fn check(need: u64) -> Result<(), String> {
-    match available() {
-        Some(free) if need > free.max(SMALL) => {
-            Err(format!("takes some {} of memory, and {} are free", shown(need), shown(free)))
-        }
-        _ => Ok(()),
+    // A limit of the process lets nothing through.
+    let bounds = [(machine(), SMALL), (groups::left(), TRIFLE), (limits::left(), 0)];
+    let too_little = |(left, least): &(Option<u64>, u64)| left.filter(|&left| need > left.max(*least));
+    match bounds.iter().filter_map(too_little).min() {
+        Some(free) => Err(format!("takes some {} of memory, and {} are free", shown(need), shown(free))),
+        None => Ok(()),
     }
 }
 
@@ -107,14 +109,11 @@ mod tests {
         }
     }
 
-    /// The lines of Linux as they are written; a group without a limit leaves the machine's number alone.
+    /// The lines of Linux as they are written.
     #[test]
     fn what_linux_says() {
         let text = "MemTotal:       24684020 kB\nMemFree:  1 kB\nMemAvailable:   23473568 kB\n";
         assert_eq!(of_meminfo(text), Some(23_473_568 * 1024));
         assert_eq!(of_meminfo("MemTotal: 3 kB\n"), None);
-        assert_eq!(of_group("1000\n", "400\n"), Some(600));
-        assert_eq!(of_group("1000", "1400"), Some(0));
-        assert_eq!(of_group("max\n", "400\n"), None);
     }
 }

@@ -1,6 +1,7 @@
 //! Points of view as CSV, the form that the oracles share (columns found by name), and answers to them.
 
 use crate::error::{Error, Result};
+use crate::input;
 use std::io::{Read, Write};
 use std::path::Path;
 
@@ -38,8 +39,7 @@ const COSINE_ROUNDING: f64 = 1e-6;
 
 /// Reads points from a CSV file. Errors name the file, line, column and value.
 pub fn read_points(path: &Path) -> Result<Vec<Point>> {
-    let file = std::fs::File::open(path).map_err(|e| Error::reading(path, e))?;
-    parse_points(path, std::io::BufReader::new(file))
+    parse_points(path, std::io::BufReader::new(input::open(path)?))
 }
 
 /// [`read_points`] of any stream; `path` is for messages only.

@@ -16,9 +16,12 @@ mod cli {
     mod help;
     mod help_width;
     mod hostile;
+    mod kept;
+    mod limits;
     mod many;
     mod media;
     mod names;
+    mod opened;
     mod options;
     mod places;
     mod points;
@@ -29,6 +32,7 @@ mod cli {
     mod run;
     mod same_bytes;
     mod slips;
+    mod spoken;
     mod stopped;
     mod windows;
 }

@@ -16,6 +16,7 @@ pub use front::{Cost, Measure, Quantity, Statistic, exceptions, front, mark};
 pub use measure::{Errors, Measured};
 pub use row::{Row, checks_csv, parse_csv, read_csv, rows, to_csv};
 pub use truth::{Check, Scene, Truth};
+pub use work::forget as forget_work;
 
 use crate::error::Result;
 use crate::methods::Method;

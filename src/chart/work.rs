@@ -2,6 +2,8 @@
 
 use super::Effort;
 use crate::error::{Error, Result};
+use crate::export::whole;
+use crate::input;
 use crate::preset::Planet;
 use serde::{Serialize, de::DeserializeOwned};
 use std::path::{Path, PathBuf};
@@ -30,18 +32,36 @@ impl Work {
     ) -> Result<T> {
         let address = blake3::hash(format!("{} {name}", self.made_of).as_bytes()).to_hex();
         let path = self.folder.join(format!("{address}.json"));
-        let kept = std::fs::read(&path).ok().and_then(|text| serde_json::from_slice(&text).ok());
+        let kept =
+            input::named_text(&path, u64::MAX - 1).ok().and_then(|text| serde_json::from_str(&text).ok());
         if let Some(part) = kept {
             return Ok(part);
         }
         let part = make()?;
         let text = serde_json::to_vec(&part).map_err(|e| Error::machine(&path, e.into()))?;
-        // Beside, then renamed: a part is there whole or not at all.
-        let beside = path.with_extension("tmp");
-        std::fs::write(&beside, text).map_err(|e| Error::machine(&beside, e))?;
-        std::fs::rename(&beside, &path).map_err(|e| Error::machine(&path, e))?;
+        whole::write(&path, &text)?;
         Ok(part)
     }
+}
+
+/// Removes the parts in a folder of them, and the folder where nothing else is in it.
+///
+/// # Errors
+/// `Machine` for a part that cannot be removed.
+pub fn forget(folder: &Path) -> Result<()> {
+    let is_part = |path: &PathBuf| {
+        let address = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+        path.extension().is_some_and(|e| e == "json")
+            && address.len() == 64
+            && address.bytes().all(|b| b.is_ascii_hexdigit())
+    };
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    for path in entries.map(|entry| entry.path()).filter(is_part) {
+        std::fs::remove_file(&path).map_err(|e| Error::machine(&path, e))?;
+    }
+    // What else is in it is somebody's own.
+    let _ = std::fs::remove_dir(folder);
+    Ok(())
 }
 
 #[cfg(test)]
@@ -63,5 +83,13 @@ mod tests {
             std::fs::write(file.unwrap().path(), "{").unwrap();
         }
         assert_eq!(work.part("a", || Ok(4)).unwrap(), 4);
+        std::fs::write(folder.path().join("notes.json"), "mine").unwrap();
+        forget(folder.path()).unwrap();
+        let left: Vec<_> =
+            std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+        assert_eq!(left, ["notes.json"]);
+        std::fs::remove_file(folder.path().join("notes.json")).unwrap();
+        forget(folder.path()).unwrap();
+        assert!(!folder.path().exists());
     }
 }

@@ -1,7 +1,7 @@
 //! `tyndall chart`: accuracy against cost of every method on one planet, as CSV, SVG and PNG.
 
 use super::machine::with_threads;
-use super::text::print;
+use super::text::{print, say, watched};
 use crate::chart::draw::pictures;
 use crate::chart::stability::{Case, cases, markdown, run as run_case};
 use crate::chart::{
@@ -9,13 +9,13 @@ use crate::chart::{
     measure, read_csv, rows, to_csv,
 };
 use crate::error::{Error, Result};
+use crate::export::whole;
 use crate::methods::{Method, catalogue};
 use crate::preset::{self, Planet};
 use crate::quality::{REGIONS, digits};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 /// Chart accuracy against cost for every method and setting: CSV, SVG and PNG
@@ -85,9 +85,8 @@ pub fn run(args: &Args) -> Result<()> {
     let (svg, png) = pictures(&rows, Measure(args.error, args.statistic))?;
     write(&args.out, &format!("{}.svg", planet.name), svg.as_bytes())?;
     write(&args.out, &format!("{}.png", planet.name), &png)?;
-    let work = work_folder(args, &planet);
-    if work.exists() && !args.redraw {
-        std::fs::remove_dir_all(&work).map_err(|e| Error::machine(&work, e))?;
+    if !args.redraw {
+        crate::chart::forget_work(&work_folder(args, &planet))?;
     }
     if args.json {
         return print(&format!("{}\n", summary(&rows, &checks)));
@@ -128,7 +127,7 @@ fn told(args: &Args, bar: &ProgressBar, part: &str, done: usize, all: usize) {
     bar.set_position(done as u64);
     bar.set_message(part.to_string());
     if !args.quiet && bar.is_hidden() {
-        let _ = writeln!(std::io::stderr(), "{}/{all} {part}", done + 1);
+        say(&format!("{}/{all} {part}", done + 1));
     }
 }
 
@@ -149,18 +148,15 @@ fn name(m: &dyn Method) -> String {
 }
 
 fn bar(args: &Args) -> ProgressBar {
-    if args.quiet || !std::io::stderr().is_terminal() {
+    if args.quiet || !watched() {
         return ProgressBar::hidden();
     }
     let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} {elapsed} {msg}");
     ProgressBar::new(1).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
-/// Beside, then renamed: a chart is there whole or not at all.
 fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<()> {
-    let (path, beside) = (folder.join(name), folder.join(format!("{name}.tmp")));
-    std::fs::write(&beside, bytes).map_err(|e| Error::machine(&beside, e))?;
-    std::fs::rename(&beside, &path).map_err(|e| Error::machine(&path, e))
+    whole::write(&folder.join(name), bytes)
 }
 
 /// Fronts, failures, exceptions by cost and method, and what Monte Carlo says.

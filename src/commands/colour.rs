@@ -2,7 +2,7 @@
 
 use super::colour_input::{Input, Named, black_body, read};
 use super::colour_views::{Illuminant, Light, illuminant, tell_of_views};
-use super::text::{number, print, talk};
+use super::text::{number, print, say};
 use crate::error::Result;
 use crate::spectrum::*;
 use std::collections::BTreeMap;
@@ -136,10 +136,10 @@ fn warn_of_held_ends(spectra: &[Named]) {
     let (from, to) = OBSERVER_RANGE;
     for s in spectra {
         if let Some((first, last)) = s.spectrum.held_outside(from as f64, to as f64) {
-            eprintln!(
+            say(&format!(
                 "warning: {} covers {first}–{last} nm; its end values are held over {from}–{to} nm",
                 s.name
-            );
+            ));
         }
     }
 }
@@ -151,7 +151,7 @@ fn warn_of_brightness(args: &Args, colours: &[Colour]) {
     let Some(first) = bright.first() else { return };
     let more = if bright.len() > 1 { format!(" and {} more", bright.len() - 1) } else { String::new() };
     let (name, y) = (&first.name, number(first.xyz[1]));
-    talk(&format!(
+    say(&format!(
         "warning: {name}{more}: Y = {y}, but white is Y = {white}: RGB and L* count from there; see --white-y"
     ));
 }

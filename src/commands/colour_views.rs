@@ -93,10 +93,10 @@ pub fn tell_of_views(views: &[Named], light: Option<&Light>) {
         Some(light) => format!("radiance_per_sr times {}; --illuminant takes another light", light.name),
         None => "radiance_per_sr taken for radiance, W/(m² sr nm)".into(),
     };
-    talk(&format!("note: {taken}"));
+    say(&format!("note: {taken}"));
     let nm: Vec<f64> = views[0].spectrum.nodes().map(|n| n.0).collect();
     let (first, last) = (nm[0], nm[nm.len() - 1]);
-    talk(&format!(
+    say(&format!(
         "note: {} wavelengths, {first}–{last} nm: straight lines between, end values held",
         nm.len()
     ));

@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::isa::Isa;
 use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
+use std::error::Error as _;
 
 /// Which instruction set the hot loops use; the bytes are the same for all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -35,7 +36,7 @@ const MOST_THREADS: usize = 1024;
 /// Runs with a number of threads, all of the machine's where none is given.
 pub fn with_threads<R: Send>(threads: Option<usize>, work: impl FnOnce() -> R + Send) -> Result<R> {
     match check_threads(threads)? {
-        None => Ok(work()),
+        None => share_threads(None).map(|()| work()),
         Some(n) => {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
             Ok(pool.map_err(|e| Error::Argument(format!("--threads {n}: {e}")))?.install(work))
@@ -46,9 +47,18 @@ pub fn with_threads<R: Send>(threads: Option<usize>, work: impl FnOnce() -> R + 
 /// Gives this process so many threads for all work to come, all of the machine's where none is given; to be called
 /// once, before any parallel work.
 pub fn share_threads(threads: Option<usize>) -> Result<()> {
-    let Some(n) = check_threads(threads)? else { return Ok(()) };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build_global();
-    pool.map_err(|e| Error::Argument(format!("--threads {n}: {e}")))
+    match check_threads(threads)? {
+        Some(n) => {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build_global();
+            pool.map_err(|e| Error::Argument(format!("--threads {n}: {e}")))
+        }
+        // Made here, where it can fail, and not at its first use, where it would panic.
+        None => match rayon::ThreadPoolBuilder::new().build_global() {
+            // Without a source: they are there already.
+            Err(e) if e.source().is_some() => Err(Error::machine("threads", std::io::Error::other(e))),
+            _ => Ok(()),
+        },
+    }
 }
 
 fn check_threads(threads: Option<usize>) -> Result<Option<usize>> {

@@ -19,3 +19,5 @@ pub mod sample;
 mod sample_water;
 mod text;
 pub mod verify;
+
+pub use machine::share_threads;

@@ -1,11 +1,10 @@
 //! `tyndall plan`: the least model that shows a scene within its tolerance.
 
 use super::machine::{IsaChoice, share_threads};
-use super::text::print;
+use super::text::{print, say};
 use crate::error::{Error, Result};
 use crate::plan::{Effort, Plan, plan};
 use crate::preset::{self, Scene};
-use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -77,8 +76,7 @@ fn planned(args: &Args, scene: &Scene) -> Result<Plan> {
     let start = Instant::now();
     let mut talk = |text: &str| {
         if !args.quiet {
-            // Not eprintln, which panics where nobody reads stderr.
-            let _ = writeln!(std::io::stderr(), "{:6.1} s  {text}", start.elapsed().as_secs_f64());
+            say(&format!("{:6.1} s  {text}", start.elapsed().as_secs_f64()));
         }
     };
     plan(&planet, scene, &effort, &mut talk, &|| crate::clock::cpu_time().as_secs_f64())

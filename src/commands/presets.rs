@@ -3,7 +3,7 @@
 use super::presets_colour::{Colours, deep_water, zenith};
 use super::presets_show::{as_json, as_text};
 use super::presets_water;
-use super::text::print;
+use super::text::{print, say};
 use crate::error::{Error, Result};
 use crate::plan::load_waters;
 use crate::preset::schema::{Kind, schema};
@@ -140,7 +140,7 @@ fn check(paths: &[PathBuf]) -> Result<()> {
         match checked(name) {
             Ok((what, warnings)) => {
                 print(&format!("ok   {name}: {what}\n"))?;
-                warnings.iter().for_each(|w| eprintln!("warning: {name}: {w}"));
+                warnings.iter().for_each(|w| say(&format!("warning: {name}: {w}")));
             }
             Err(error) => {
                 bad += 1;

@@ -1,14 +1,14 @@
 //! `tyndall reference`: the Monte Carlo path tracer on the command line, radiances as CSV with standard errors.
 
 use super::machine::{in_range, with_threads};
-use super::text::stream;
+use super::text::{say, stream, watched};
 use crate::error::{Error, Result};
 use crate::medium::Medium;
 use crate::memory;
 use crate::points::{Answer, Point, read_points, write_answers};
 use crate::reference::{Estimate, ORDERS, Settings, Tracer};
 use indicatif::{ProgressBar, ProgressStyle};
-use std::io::{IsTerminal, Write};
+use std::io::Write;
 use std::path::PathBuf;
 
 /// Radiance at points of view by Monte Carlo path tracing, with standard errors
@@ -120,8 +120,8 @@ fn trace(args: &Args, medium: &Medium, points: &[Point]) -> Vec<Vec<Estimate>> {
             estimate
         };
         all.push(points.iter().map(one).collect());
-        if !args.quiet && !std::io::stderr().is_terminal() {
-            eprintln!("{nm} nm: {} points", points.len());
+        if !args.quiet && !watched() {
+            say(&format!("{nm} nm: {} points", points.len()));
         }
     }
     bar.finish_and_clear();
@@ -129,7 +129,7 @@ fn trace(args: &Args, medium: &Medium, points: &[Point]) -> Vec<Vec<Estimate>> {
 }
 
 fn progress(args: &Args, steps: u64) -> ProgressBar {
-    if args.quiet || !std::io::stderr().is_terminal() {
+    if args.quiet || !watched() {
         return ProgressBar::hidden();
     }
     let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {eta}");
@@ -141,7 +141,8 @@ fn complain(args: &Args, estimates: &[Vec<Estimate>]) {
     let Some(target) = args.stderr else { return };
     let missed = estimates.iter().flatten().filter(|e| e.stderr > target * e.radiance.abs()).count();
     if missed > 0 {
-        eprintln!("{missed} values did not reach a standard error of {}% within --paths", 100.0 * target);
+        let percent = 100.0 * target;
+        say(&format!("{missed} values did not reach a standard error of {percent}% within --paths"));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::machine::{IsaChoice, MOST_ORDERS, in_range, orders, wavelengths, with_threads};
 use super::sample_water;
-use super::text::stream;
+use super::text::{say, stream};
 use crate::error::{Error, Result};
 use crate::export::manifest::Manifest;
 use crate::medium::Medium;
@@ -96,11 +96,11 @@ pub fn run(args: &Args) -> Result<()> {
         match sky.channels() {
             Channels::Wavelengths(nm) => stream(|out| spectral(out, args, &planet, &points, &nm, &light)),
             Channels::Rgb => {
-                eprintln!(
+                say(&format!(
                     "this layout holds colour: answers are linear RGB ({}), {}",
                     manifest.colour.space,
                     if args.absolute { "cd/m²" } else { "luminance over the star's illuminance, 1/sr" }
-                );
+                ));
                 stream(|out| colours(out, args, &manifest, &points, &light))
             }
         }

@@ -1,7 +1,6 @@
-//! Numbers and lines of text output.
+//! Numbers as text, and where text goes.
 
-use crate::error::{Error, Result};
-use std::io::Write;
+pub use crate::output::{print, say, stream, watched};
 
 /// A number to nine significant digits: plain where that is short, else with an exponent.
 pub fn number(v: f64) -> String {
@@ -14,28 +13,6 @@ pub fn number(v: f64) -> String {
     }
     let before_point = libm::floor(libm::log10(size)) as i32 + 1;
     format!("{v:.*}", (9 - before_point).max(0) as usize)
-}
-
-/// Writes a long answer to standard output bit by bit, so that it is never whole in memory; as [`print`].
-pub fn stream(write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<()> {
-    let mut out = std::io::BufWriter::new(std::io::stdout().lock());
-    match write(&mut out).and_then(|()| out.flush()) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Error::machine("standard output", e)),
-        _ => Ok(()),
-    }
-}
-
-/// A line on standard error. Not eprintln, which panics where nobody reads it.
-pub fn talk(line: &str) {
-    let _ = writeln!(std::io::stderr(), "{line}");
-}
-
-/// Writes to standard output. A reader that has seen enough (`| head`) is no failure.
-pub fn print(text: &str) -> Result<()> {
-    match std::io::stdout().write_all(text.as_bytes()) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Error::machine("standard output", e)),
-        _ => Ok(()),
-    }
 }
 
 #[cfg(test)]

@@ -5,11 +5,12 @@ use crate::bake::versions;
 use crate::error::{Error, Line, Result};
 use crate::export::atlas::{Atlas, Samples};
 use crate::export::exr::from_exr_bytes;
+use crate::export::foreign::foreign;
 use crate::export::manifest::{MANIFEST, Manifest, Precision, Table, hash_of};
 use crate::input;
 use crate::preset;
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `tyndall verify`.
@@ -17,12 +18,14 @@ use std::path::{Path, PathBuf};
 #[command(
     about = "Check that the files of a bake match their manifest, its preset and this tool",
     before_help = "Example: tyndall verify out/earth",
-    after_help = "Exit code 0: all holds; 1: something differs, a line for each on stdout; 2: no bake to check."
+    after_help = "Exit code 0: all holds; 1: something differs, a line for each on stdout; 2: no bake to check.\n\
+                  Files that are not of the bake, such as those that engines write beside assets, are listed as foreign; \
+                  a bake that takes the place of this one keeps them."
 )]
 pub struct Args {
     /// The folder of a bake (the one with bake.json in it)
     pub bake: PathBuf,
-    /// Answer in JSON: {"bake", "holds", "differences": [{"place", "what"}]}
+    /// Answer in JSON: {"bake", "holds", "differences": [{"place", "what"}], "foreign": [file]}
     #[arg(long)]
     pub json: bool,
 }
@@ -41,7 +44,8 @@ pub struct Difference {
 /// `Check` if anything differs, `File` if there is no bake to check.
 pub fn run(args: &Args) -> Result<()> {
     let differences = differences(&args.bake, shipped_hash)?;
-    text::print(&told(args, &differences))?;
+    let foreign = foreign(folder_of(&args.bake));
+    text::print(&told(args, &differences, &foreign))?;
     match differences.len() {
         0 => Ok(()),
         1 => Err(Error::Check(format!("{}: 1 difference", args.bake.display()))),
@@ -54,19 +58,30 @@ fn shipped_hash(name: &str) -> Option<String> {
     preset::is_shipped(name).then(|| preset::load(name, &[]).ok().map(|planet| planet.hash()))?
 }
 
-fn told(args: &Args, differences: &[Difference]) -> String {
+/// What differs and which files are not the bake's own, which is no difference.
+fn told(args: &Args, differences: &[Difference], foreign: &[PathBuf]) -> String {
     let bake = args.bake.display();
     if args.json {
         let holds = differences.is_empty();
-        let answer =
-            serde_json::json!({"bake": bake.to_string(), "holds": holds, "differences": differences});
+        let foreign: Vec<String> = foreign.iter().map(|file| file.to_string_lossy().into_owned()).collect();
+        let answer = serde_json::json!({
+            "bake": bake.to_string(), "holds": holds, "differences": differences, "foreign": foreign
+        });
         return format!("{answer:#}\n");
     }
+    let line =
+        |place: &dyn Display, what: &str| format!("{}: {}: {}\n", Line(&bake), Line(place), Line(what));
+    let of_others = foreign.iter().map(|file| line(&file.display(), "foreign: not of this bake, and kept"));
+    let told: String = differences.iter().map(|d| line(&d.place, &d.what)).chain(of_others).collect();
     if differences.is_empty() {
-        return format!("{bake}: every file matches its manifest\n");
+        return format!("{told}{bake}: every file matches its manifest\n");
     }
-    let line = |d: &Difference| format!("{}: {}: {}\n", Line(&bake), Line(&d.place), Line(&d.what));
-    differences.iter().map(line).collect()
+    told
+}
+
+fn folder_of(bake: &Path) -> &Path {
+    let parent = || bake.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if bake.is_dir() { bake } else { parent() }
 }
 
 /// What differs in the bake at `bake`. `shipped` gives the hash of the preset of a name that this tool ships; it
@@ -74,7 +89,7 @@ fn told(args: &Args, differences: &[Difference]) -> String {
 /// name may be the same by intent.
 pub fn differences(bake: &Path, shipped: impl Fn(&str) -> Option<String>) -> Result<Vec<Difference>> {
     let manifest = Manifest::read(bake)?;
-    let folder = if bake.is_dir() { bake } else { bake.parent().unwrap_or(Path::new(".")) };
+    let folder = folder_of(bake);
     let mut found = about_the_manifest(&manifest, shipped);
     for table in &manifest.tables {
         let whats = check_file(folder, &table.file, &table.blake3, |bytes| check_table(table, bytes));
@@ -88,7 +103,6 @@ pub fn differences(bake: &Path, shipped: impl Fn(&str) -> Option<String>) -> Res
         let whats = check_file(folder, &other.file, &other.blake3, |_| Vec::new());
         found.extend(whats.into_iter().map(|what| difference(&other.file, what)));
     }
-    found.extend(unlisted(folder, &manifest)?);
     Ok(found)
 }
 
@@ -109,7 +123,12 @@ fn difference(place: &str, what: impl Into<String>) -> Difference {
 
 fn about_the_manifest(manifest: &Manifest, shipped: impl Fn(&str) -> Option<String>) -> Vec<Difference> {
     let mut found = Vec::new();
-    if !manifest.seal_holds() {
+    if manifest.manifest_blake3.is_empty() {
+        found.push(difference(
+            MANIFEST,
+            "has no manifest_blake3: nothing tells whether a value in it was changed",
+        ));
+    } else if !manifest.seal_holds() {
         found.push(difference(MANIFEST, "a value in it was changed since it was baked (another BLAKE3)"));
     }
     let preset = &manifest.preset;
@@ -233,26 +252,4 @@ fn check_channels(table: &Table, atlas: &Atlas) -> Vec<String> {
         }
     }
     whats
-}
-
-/// Files in the folder that the manifest does not list.
-fn unlisted(folder: &Path, manifest: &Manifest) -> Result<Vec<Difference>> {
-    let tables = manifest.tables.iter().flat_map(|t| t.files().map(|f| f.0.as_str()));
-    let others = manifest.files.iter().map(|f| f.file.as_str());
-    let listed: BTreeSet<PathBuf> = tables.chain(others).chain([MANIFEST]).map(PathBuf::from).collect();
-    let mut extra = BTreeSet::new();
-    let mut folders = vec![folder.to_path_buf()];
-    while let Some(next) = folders.pop() {
-        for entry in fs::read_dir(&next).map_err(|e| Error::reading(&next, e))? {
-            let entry = entry.map_err(|e| Error::reading(&next, e))?;
-            let path = entry.path();
-            let inside = path.strip_prefix(folder).unwrap_or(&path).to_path_buf();
-            match entry.file_type() {
-                Ok(kind) if kind.is_dir() => folders.push(path),
-                _ if !listed.contains(&inside) => drop(extra.insert(inside)),
-                _ => {}
-            }
-        }
-    }
-    Ok(extra.iter().map(|p| difference(&p.to_string_lossy(), "is not part of this bake")).collect())
 }

@@ -3,7 +3,9 @@
 
 use super::interrupt::{self, interrupted};
 use crate::error::{Error, Result};
+use crate::input;
 use std::fs::{self, File, TryLockError};
+use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -13,18 +15,23 @@ pub struct Claim {
     _file: File,
 }
 
+/// What stands in a lock file that this program made. One without it, which somebody else made, serves as well, and
+/// stays.
+const TEXT: &str = "tyndall bakes the folder of this name\n";
+
 impl Claim {
     /// The claim of `target`, which need not exist; none while another process has it.
     ///
     /// # Errors
-    /// `Machine` if the lock file cannot be made.
+    /// `Machine` if the lock file cannot be made, `File` if something that is no file stands in its place.
     pub fn try_take(target: &Path) -> Result<Option<Claim>> {
         let path = beside(target)?;
         loop {
-            // What stands there is not emptied: it might be a link to somebody's file.
-            let mut open = File::options();
-            let file = open.write(true).create(true).truncate(false).open(&path);
-            let file = file.map_err(|e| Error::machine(&path, e))?;
+            let file = match open(&path) {
+                // It was taken away in this moment.
+                Err(e) if e.kind() == ErrorKind::NotFound && fs::symlink_metadata(&path).is_err() => continue,
+                opened => opened.map_err(|e| unusable(&path, e))?,
+            };
             match file.try_lock() {
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => return Ok(None),
@@ -32,7 +39,9 @@ impl Claim {
             }
             // Whoever had it took the file away in the moment before it was locked here.
             if is_still(&file, &path) {
-                interrupt::register(&path);
+                if is_ours(&path) {
+                    interrupt::register(&path);
+                }
                 return Ok(Some(Claim { path, _file: file }));
             }
         }
@@ -57,8 +66,37 @@ impl Claim {
 
 impl Drop for Claim {
     fn drop(&mut self) {
-        interrupt::discard(&self.path);
+        match is_ours(&self.path) {
+            true => interrupt::discard(&self.path),
+            false => interrupt::forget(&self.path),
+        }
     }
+}
+
+/// The lock file, made where there is none; what stands in it already is left as it is.
+fn open(path: &Path) -> io::Result<File> {
+    match File::options().write(true).create_new(true).open(path) {
+        Ok(mut file) => {
+            let written = file.write_all(TEXT.as_bytes());
+            written.inspect_err(|_| drop(fs::remove_file(path))).map(|()| file)
+        }
+        Err(e) if e.kind() == ErrorKind::AlreadyExists => input::regular(path, File::options().write(true)),
+        Err(e) => Err(e),
+    }
+}
+
+/// What stands in its place is the user's to mend, the rest the machine's.
+fn unusable(path: &Path, e: io::Error) -> Error {
+    match e.kind() {
+        ErrorKind::NotFound | ErrorKind::InvalidData | ErrorKind::IsADirectory => Error::file(path, e),
+        _ => Error::machine(path, e),
+    }
+}
+
+/// Whether a lock file is one that this program made: no link, and no file of another content.
+fn is_ours(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok_and(|found| found.is_file())
+        && input::named_text(path, TEXT.len() as u64).is_ok_and(|text| text == TEXT)
 }
 
 fn beside(target: &Path) -> Result<PathBuf> {
@@ -90,17 +128,45 @@ mod tests {
     use super::*;
     use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
 
-    /// A link of the lock's name is gone afterwards, and the file it led to is as it was.
+    /// A file or a link of the lock's name serves as a lock and is as it was afterwards, and so is what the link leads to.
     #[cfg(unix)]
     #[test]
-    fn a_link_in_its_place() {
+    fn what_others_have_in_its_place() {
         let dir = tempfile::tempdir().unwrap();
-        let thesis = dir.path().join("thesis.txt");
+        let [lock, thesis, target] = [".phobos.lock", "thesis.txt", "phobos"].map(|n| dir.path().join(n));
         fs::write(&thesis, "years").unwrap();
-        std::os::unix::fs::symlink(&thesis, dir.path().join(".phobos.lock")).unwrap();
-        drop(Claim::take(&dir.path().join("phobos")).unwrap());
-        assert_eq!(fs::read_to_string(&thesis).unwrap(), "years");
-        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
+        for link in [true, false] {
+            match link {
+                true => std::os::unix::fs::symlink(&thesis, &lock).unwrap(),
+                false => fs::write(&lock, "mine").unwrap(),
+            }
+            let held = Claim::take(&target).unwrap();
+            assert!(Claim::try_take(&target).unwrap().is_none());
+            drop(held);
+            assert_eq!(fs::read_to_string(&thesis).unwrap(), "years");
+            assert_eq!(fs::read_to_string(&lock).unwrap(), if link { "years" } else { "mine" });
+            fs::remove_file(&lock).unwrap();
+        }
+    }
+
+    /// A folder, a pipe or a link to nothing in its place is refused at once.
+    #[cfg(unix)]
+    #[test]
+    fn what_is_no_file_is_refused() {
+        let dir = tempfile::tempdir().unwrap();
+        let [lock, target] = [".phobos.lock", "phobos"].map(|n| dir.path().join(n));
+        let refused = || {
+            let error = Claim::take(&target).err().expect("refused");
+            assert!(error.exit_code() == 2 && error.to_string().contains(".phobos.lock"), "{error}");
+        };
+        fs::create_dir(&lock).unwrap();
+        refused();
+        fs::remove_dir(&lock).unwrap();
+        std::os::unix::fs::symlink("nothing", &lock).unwrap();
+        refused();
+        fs::remove_file(&lock).unwrap();
+        assert!(std::process::Command::new("mkfifo").arg(&lock).status().unwrap().success());
+        refused();
     }
 
     /// One has it at a time, however many want it, each gets it, and nothing is left.

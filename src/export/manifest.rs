@@ -7,8 +7,10 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 pub use super::replace::MANIFEST;
+use super::sweep::in_between;
 
 /// The version of the form of `bake.json` that this tool writes, and the newest that it reads.
 pub const SCHEMA_VERSION: u64 = 1;
@@ -259,7 +261,7 @@ impl Encoding {
 }
 
 /// Bytes of a manifest at most. It holds the preset with every spectrum and phase function resolved, a number a line.
-const MOST_MANIFEST: u64 = 1 << 30;
+pub(super) const MOST_MANIFEST: u64 = 1 << 30;
 
 /// The hash of a resolved preset: BLAKE3 of its compact JSON text, 64 hexadecimal digits.
 pub fn hash_of(resolved: &Value) -> String {
@@ -286,9 +288,18 @@ impl Manifest {
     /// # Errors
     /// `File` if it is missing, malformed (with line and column), or of a newer version.
     pub fn read(bake: &Path) -> Result<Manifest> {
-        let path = path_in(bake)?;
-        let text = input::named_text(&path, MOST_MANIFEST)?;
-        Manifest::parse(&path, &text)
+        let folder = if bake.ends_with(MANIFEST) { bake.parent().unwrap_or(bake) } else { bake };
+        let start = Instant::now();
+        for look in 0..LOOKS {
+            match read_now(bake) {
+                // Some bake takes the place of another in this moment.
+                Err(_) if in_between(folder) => std::thread::sleep(Duration::from_millis(10)),
+                // It may have done so since; what takes long to find out is another fault.
+                Err(_) if look < 2 && start.elapsed() < Duration::from_millis(50) => {}
+                found => return found,
+            }
+        }
+        read_now(bake)
     }
 
     /// As [`Manifest::read`], for a text already in memory; `path` is for messages only.
@@ -307,6 +318,18 @@ impl Manifest {
             Some((other, _)) => Err(Error::file(path, format!("schema_version {other} is unknown"))),
         }
     }
+}
+
+/// Looks at a folder in which another bake takes the place of the old one.
+const LOOKS: usize = 100;
+
+fn read_now(bake: &Path) -> Result<Manifest> {
+    let path = path_in(bake)?;
+    let text = match bake.is_dir() {
+        true => input::part_text(bake, MANIFEST, MOST_MANIFEST)?,
+        false => input::named_text(&path, MOST_MANIFEST)?,
+    };
+    Manifest::parse(&path, &text)
 }
 
 fn path_in(bake: &Path) -> Result<PathBuf> {

@@ -7,12 +7,17 @@ pub mod claim;
 pub mod container;
 pub mod exr;
 mod font;
+pub mod foreign;
+mod in_place;
 pub mod interrupt;
 pub mod manifest;
+mod mark;
 pub mod picture;
 pub mod replace;
 mod seal;
 pub mod sheet;
 pub mod staging;
+mod sweep;
+pub mod whole;
 
 pub use atlas::{Atlas, Attribute, Channel, Samples};

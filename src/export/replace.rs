@@ -1,6 +1,9 @@
 //! A new folder in the place of an old one, with no moment at which neither stands there where the operating
 //! system allows it (Linux, macOS), and as short a moment as possible elsewhere.
 
+use super::foreign::carry;
+use super::in_place;
+use super::sweep::in_between;
 use crate::error::{Error, Result};
 use std::fs;
 use std::io::{self, ErrorKind};
@@ -20,16 +23,21 @@ const ROUNDS: usize = 1000;
 pub fn check_replaceable(target: &Path) -> Result<()> {
     // A folder that another process moves away and removes in this moment looks strange half-way: only what
     // looks the same for a while is refused.
-    for _ in 0..LOOKS {
+    for look in 0..MOST_LOOKS {
         if looks_replaceable(target)? {
             return Ok(());
+        }
+        if look >= LOOKS && !in_between(target) {
+            break;
         }
         std::thread::sleep(Duration::from_millis(2));
     }
     Err(Error::file(target, format!("not replaced: the folder is not empty and not a bake (no {MANIFEST})")))
 }
 
-const LOOKS: usize = 10;
+const LOOKS: usize = 250;
+/// Where another bake says that it is at it.
+const MOST_LOOKS: usize = 5000;
 
 fn looks_replaceable(target: &Path) -> Result<bool> {
     match fs::read_dir(target) {
@@ -42,21 +50,35 @@ fn looks_replaceable(target: &Path) -> Result<bool> {
     }
 }
 
-/// Moves the folder `new` to `target`. Returns where the folder that stood there before is now, to be removed
-/// by the caller. `aside` is a free name beside them, used only where `exchange` is off or unsupported.
-pub fn replace(new: &Path, target: &Path, aside: &Path, mut exchange: bool) -> Result<Option<PathBuf>> {
+/// How a folder takes the place of another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Way {
+    /// Both change places in one step.
+    Exchange,
+    /// The old one is moved aside first: for a moment nothing stands there.
+    Aside,
+    /// File by file, for a folder that cannot be moved.
+    InPlace,
+}
+
+/// Moves the folder `new` to `target`, in that `way` or, where the system cannot, the next of [`Way`]. Returns where the
+/// folder that stood there before is now, or a copy of its bake, to be removed by the caller. `aside` is a free name.
+pub fn replace(new: &Path, target: &Path, aside: &Path, mut way: Way) -> Result<Option<PathBuf>> {
     for _ in 0..ROUNDS {
         check_replaceable(target)?;
         let step = if fs::symlink_metadata(target).is_err() {
             fs::rename(new, target).map(|()| None)
-        } else if exchange {
-            swap(new, target).map(|()| Some(new.to_path_buf()))
         } else {
-            move_aside(new, target, aside).map(|()| Some(aside.to_path_buf()))
+            match way {
+                Way::Exchange => swap(new, target).map(|()| Some(new.to_path_buf())),
+                Way::Aside => move_aside(new, target, aside).map(|()| Some(aside.to_path_buf())),
+                Way::InPlace => in_place::put(new, target, aside).map(|()| Some(aside.to_path_buf())),
+            }
         };
         match step {
             Ok(old) => return Ok(old),
-            Err(e) if exchange && unsupported(&e) => exchange = false,
+            Err(e) if way == Way::Exchange && (unsupported(&e) || immovable(&e)) => way = Way::Aside,
+            Err(e) if way == Way::Aside && immovable(&e) => way = Way::InPlace,
             // Another process put its folder there, or took it away, since we looked.
             Err(e) if raced(&e) && new.exists() => {}
             Err(e) => return Err(Error::machine(target, e)),
@@ -68,8 +90,9 @@ pub fn replace(new: &Path, target: &Path, aside: &Path, mut exchange: bool) -> R
 fn move_aside(new: &Path, target: &Path, aside: &Path) -> io::Result<()> {
     fs::rename(target, aside)?;
     fs::rename(new, target).inspect_err(|_| {
-        // Back to where it was; if another bake stands there by now, the older one has no place any more.
-        if fs::rename(aside, target).is_err() && target.exists() {
+        // Back to where it was; if another bake stands there by now, the older one has no place any more, but what in
+        // it is not the bake's.
+        if fs::rename(aside, target).is_err() && target.exists() && carry(aside, target).is_ok() {
             super::interrupt::remove(aside);
         }
     })
@@ -90,6 +113,11 @@ fn swap(_: &Path, _: &Path) -> io::Result<()> {
     Err(ErrorKind::Unsupported.into())
 }
 
+/// A folder from under an overlay filesystem, or one that is a mount.
+fn immovable(e: &io::Error) -> bool {
+    matches!(e.kind(), ErrorKind::CrossesDevices | ErrorKind::ResourceBusy)
+}
+
 /// Filesystems that cannot exchange say so in several ways.
 fn unsupported(e: &io::Error) -> bool {
     matches!(e.kind(), ErrorKind::Unsupported | ErrorKind::InvalidInput)
@@ -104,25 +132,29 @@ mod tests {
         fs::write(folder.join(MANIFEST), text).unwrap();
     }
 
-    /// With and without an exchange by the system, the new folder ends in the place of the old one, and the
+    /// In every way, the new folder ends in the place of the old one, and the
     /// old one is handed back whole.
     #[test]
     fn the_old_folder_is_handed_back_whole() {
-        for exchange in [true, false] {
+        for way in [Way::Exchange, Way::Aside, Way::InPlace] {
             let dir = tempfile::tempdir().unwrap();
             let [new, target, aside] = ["new", "target", "aside"].map(|n| dir.path().join(n));
             bake(&new, "new");
             bake(&target, "old");
-            let old = replace(&new, &target, &aside, exchange).unwrap().unwrap();
+            let old = replace(&new, &target, &aside, way).unwrap().unwrap();
             assert_eq!(fs::read_to_string(target.join(MANIFEST)).unwrap(), "new");
             assert_eq!(fs::read_to_string(old.join(MANIFEST)).unwrap(), "old");
         }
     }
 
-    /// Four threads replace one folder thirty times each, by moving the old one aside: every call ends, and
-    /// what stands there at the end, and each old folder handed back, is whole.
+    /// Four threads replace one folder thirty times each, by moving the old one aside or file by file: every call ends,
+    /// and what stands there at the end, and each old folder handed back, is whole.
     #[test]
     fn racing_without_an_exchange_loses_no_folder_half_way() {
+        [Way::Aside, Way::InPlace].into_iter().for_each(race);
+    }
+
+    fn race(way: Way) {
         let dir = tempfile::tempdir().unwrap();
         let target = &dir.path().join("target");
         std::thread::scope(|scope| {
@@ -131,7 +163,7 @@ mod tests {
                 scope.spawn(move || {
                     for round in 0..30 {
                         bake(&new, &format!("{worker} {round}"));
-                        if let Some(old) = replace(&new, target, &aside, false).unwrap() {
+                        if let Some(old) = replace(&new, target, &aside, way).unwrap() {
                             assert!(old.join(MANIFEST).is_file());
                             fs::remove_dir_all(old).unwrap();
                         }
@@ -149,11 +181,11 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let [new, target, aside] = ["new", "target", "aside"].map(|n| dir.path().join(n));
         bake(&new, "one");
-        assert_eq!(replace(&new, &target, &aside, true).unwrap(), None);
+        assert_eq!(replace(&new, &target, &aside, Way::Exchange).unwrap(), None);
         fs::remove_dir_all(&target).unwrap();
         fs::create_dir(&target).unwrap();
         bake(&new, "two");
-        let old = replace(&new, &target, &aside, true).unwrap().unwrap();
+        let old = replace(&new, &target, &aside, Way::Exchange).unwrap().unwrap();
         assert_eq!(fs::read_dir(old).unwrap().count(), 0);
         assert_eq!(fs::read_to_string(target.join(MANIFEST)).unwrap(), "two");
     }

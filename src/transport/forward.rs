@@ -259,7 +259,6 @@ mod tests {
                 }
                 let found =
                     phase.value(nu) + f64::from(peak.at(nu as f32, Lanes::splat(depth as f32))[0]) + field;
-                println!("{depth} {nu}: {found:.5} {truth:.5}");
                 assert!((found - truth).abs() < 4e-3 * (truth.abs() + 0.1), "{depth} {nu}: {found} {truth}");
             }
         }

@@ -199,12 +199,44 @@ fn a_stopped_bake_cleans_up_and_says_so() {
     }
 }
 
-/// A bake moved aside by a process that died before its own was in place (only where the system cannot
-/// exchange two folders) is put back by the next bake, even if that one fails.
+/// Where the system cannot exchange two folders, there is no bake for a moment: one moved aside by a process that was
+/// killed then is put back by the next bake, even if that one fails.
 #[test]
 fn a_bake_left_aside_is_put_back() {
     let (dir, target) = with_old_bake();
-    fs::rename(&target, dir.path().join(".mars.old-0123456789abcdef")).unwrap();
+    let mut child = child_in_mid_bake(&target);
+    let theirs = names(dir.path()).into_iter().find(|name| name != "mars").unwrap();
+    fs::rename(&target, dir.path().join(theirs).join("old")).unwrap();
+    drop(Staging::begin(&target).unwrap());
+    assert!(!target.exists(), "its process lives");
+    child.kill().unwrap();
+    child.wait().unwrap();
     drop(Staging::begin(&target).unwrap());
     assert_eq!((text_of(&target), names(dir.path())), ("old".into(), vec!["mars".into()]));
+}
+
+/// A folder that begins like one of a bake's is a user's, whatever is in it, and stays; so does a bake under such a name.
+#[test]
+fn folders_of_users_are_not_swept() {
+    let (dir, target) = with_old_bake();
+    let users = [".mars.old-x", ".mars.tmp-x", ".mars.tmp-0123456789abcdef", ".mars.old-0123456789abcdef"];
+    for (k, name) in users.iter().enumerate() {
+        let folder = dir.path().join(name);
+        match k {
+            0 => fs::create_dir(folder).unwrap(),
+            1 => bake(&folder, "mine").unwrap(),
+            _ => {
+                fs::create_dir(&folder).unwrap();
+                fs::write(folder.join("thesis.txt"), "years").unwrap();
+                fs::write(folder.join(".tyndall"), "notes").unwrap();
+            }
+        }
+    }
+    fs::remove_dir_all(&target).unwrap();
+    bake(&target, "new").unwrap();
+    let mut wanted: Vec<String> = users.iter().map(|name| name.to_string()).chain(["mars".into()]).collect();
+    wanted.sort();
+    assert_eq!((text_of(&target), names(dir.path())), ("new".into(), wanted));
+    assert_eq!(text_of(&dir.path().join(users[1])), "mine");
+    assert_eq!(fs::read_to_string(dir.path().join(users[3]).join("thesis.txt")).unwrap(), "years");
 }

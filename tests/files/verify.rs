@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use tempfile::{TempDir, tempdir};
 use tyndall::commands::verify::{Args, differences, run};
 use tyndall::export::exr::to_exr_bytes;
@@ -85,7 +85,9 @@ fn manifest(staging: &Staging) -> Manifest {
 fn bake() -> TempDir {
     let dir = tempdir().unwrap();
     let staging = Staging::begin(&dir.path().join("phobos")).unwrap();
-    let text = manifest(&staging).to_json().unwrap();
+    let mut manifest = manifest(&staging);
+    manifest.seal().unwrap();
+    let text = manifest.to_json().unwrap();
     staging.write(MANIFEST, text.as_bytes()).unwrap();
     staging.commit().unwrap();
     dir
@@ -188,7 +190,9 @@ fn every_kind_of_difference_is_named() {
         ("phobos/scattering.exr", "another BLAKE3", |b| truncate(&b.join("phobos/scattering.exr"))),
         ("phobos/scattering.exr", "truncated", |b| truncate(&b.join("phobos/scattering.exr"))),
         ("preview.png", "another BLAKE3", |b| fs::write(b.join("preview.png"), "paint").unwrap()),
-        ("notes.txt", "not part of this bake", |b| fs::write(b.join("notes.txt"), "mine").unwrap()),
+        ("bake.json", "no manifest_blake3", |b| {
+            edit(b, |m| drop(m.as_object_mut().unwrap().remove("manifest_blake3")))
+        }),
         ("preset.hash", "resolved preset", |b| edit(b, |m| m["preset"]["resolved"]["radius_m"] = json!(1.0))),
         ("tool.version", "0.0.0", |b| edit(b, |m| m["tool"]["version"] = json!("0.0.0"))),
         ("phobos/scattering.exr", "not [9, 2", |b| {
@@ -217,6 +221,50 @@ fn every_kind_of_difference_is_named() {
     }
 }
 
+/// Files of others are told of, in whichever way the bake is named, and are no difference.
+#[test]
+fn files_of_others_are_no_difference() {
+    let dir = bake();
+    let bake = dir.path().join("phobos");
+    fs::create_dir(bake.join(".godot")).unwrap();
+    for file in ["phobos/scattering.exr.meta", ".godot/uid_cache.bin", "notes.txt"] {
+        fs::write(bake.join(file), "mine").unwrap();
+    }
+    assert_eq!(differences(&bake, |_| None).unwrap(), []);
+    let told = tyndall::export::foreign::foreign(&bake);
+    assert_eq!(told, [".godot/uid_cache.bin", "notes.txt", "phobos/scattering.exr.meta"].map(PathBuf::from));
+    run(&Args { bake: bake.join(MANIFEST), json: true }).unwrap();
+}
+
+/// A reader that comes in the moment in which the old bake is moved aside and the new one not yet in its place waits for
+/// it; one that comes where there is no bake does not.
+#[test]
+fn a_reader_between_two_bakes() {
+    let dir = bake();
+    let bake = dir.path().join("phobos");
+    let theirs = dir.path().join(".phobos.tmp-0123456789abcdef");
+    fs::create_dir(&theirs).unwrap();
+    fs::write(theirs.join(".tyndall"), "").unwrap();
+    std::thread::scope(|scope| {
+        let baker = scope.spawn(|| {
+            for _ in 0..20 {
+                fs::rename(&bake, theirs.join("old")).unwrap();
+                std::thread::sleep(std::time::Duration::from_millis(5));
+                fs::rename(theirs.join("old"), &bake).unwrap();
+                std::thread::sleep(std::time::Duration::from_millis(1));
+            }
+        });
+        while !baker.is_finished() {
+            Manifest::read(&bake).unwrap();
+            Manifest::read(&bake.join(MANIFEST)).unwrap();
+        }
+    });
+    fs::remove_dir_all(&bake).unwrap();
+    let start = std::time::Instant::now();
+    assert_eq!(Manifest::read(&bake).unwrap_err().exit_code(), 2);
+    assert!(start.elapsed() < std::time::Duration::from_millis(900));
+}
+
 fn truncate(file: &Path) {
     let bytes = fs::read(file).unwrap();
     fs::write(file, &bytes[..bytes.len() - 1]).unwrap();
@@ -233,7 +281,8 @@ fn a_shipped_preset_that_has_changed_is_told() {
     assert_eq!(found.len(), 1);
     assert!(found[0].what.contains("changed since"), "{found:?}");
     edit(&bake, |m| m["settings"]["shipped_preset"] = json!(false));
-    assert_eq!(differences(&bake, |_| Some("other".into())).unwrap(), [], "a preset of the user's own");
+    let found = differences(&bake, |_| Some("other".into())).unwrap();
+    assert!(found.len() == 1 && found[0].place == MANIFEST, "a preset of the user's own: {found:?}");
 }
 
 #[test]

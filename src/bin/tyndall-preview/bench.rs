@@ -10,6 +10,7 @@ use crate::painter::{Look, Painter};
 use crate::resources::Method;
 use crate::stopwatch::{Stopwatch, Times};
 use crate::target::{MEASURED, SHOWN, Target};
+use tyndall::output::print;
 use tyndall::{Error, Result};
 
 /// Steps that are taken for converged, along the view and towards the sun. Their product stays below 65535, where
@@ -31,15 +32,18 @@ pub fn run(gpu: &Gpu, bake: &Bake, options: &Options) -> Result<()> {
     let bench = Bench { gpu, bake, options, view, stopwatch: Stopwatch::new(gpu) };
     let [width, height] = bench.view.size;
     let (layout, frames, clock) = (bake.layout.name(), options.frames, bench.stopwatch.about());
-    println!("{}, {layout}, {width}x{height}, {frames} frames, {clock}", gpu.name());
-    println!("{:<22} {:>9} {:>9} {:>9} ms a frame {:>9} MB", "method", "min", "median", "max", "memory");
+    line(&format!("{}, {layout}, {width}x{height}, {frames} frames, {clock}", gpu.name()))?;
+    line(&format!(
+        "{:<22} {:>9} {:>9} {:>9} ms a frame {:>9} MB",
+        "method", "min", "median", "max", "memory"
+    ))?;
     if options.method.is_some() {
         bench.timed(options.method(bake)?)?;
         return bench.say_textures();
     }
     let table = bench.timed(Method::Table)?;
     if bake.constants.counts[0] < 0.5 {
-        println!("no march: it needs layout compact");
+        line("no march: it needs layout compact")?;
         return bench.say_textures();
     }
     let with_table = fewest_view_steps(gpu, bake, &bench.view, 0)?;
@@ -48,11 +52,15 @@ pub fn run(gpu: &Gpu, bake: &Bake, options: &Options) -> Result<()> {
     let march = bench.timed(Method::March { view: plain, sun })?;
     let march_2d = bench.timed(Method::March { view: with_table, sun: 0 })?;
     let [t, m, d] = [table.median, march.median, march_2d.median];
-    println!("table : march : march with 2D table = 1 : {:.2} : {:.2}", m / t, d / t);
-    println!("march over march with 2D table: {:.1} (published: 10)", m / d);
-    println!("march over table: {:.1} (published, vertices: 4 to 5.3)", m / t);
-    println!("The table's frames hold all orders of scattering, the marches' the first.");
+    line(&format!("table : march : march with 2D table = 1 : {:.2} : {:.2}", m / t, d / t))?;
+    line(&format!("march over march with 2D table: {:.1} (published: 10)", m / d))?;
+    line(&format!("march over table: {:.1} (published, vertices: 4 to 5.3)", m / t))?;
+    line("The table's frames hold all orders of scattering, the marches' the first.")?;
     bench.say_textures()
+}
+
+fn line(text: &str) -> Result<()> {
+    print(&format!("{text}\n"))
 }
 
 /// What all methods are timed with.
@@ -80,15 +88,18 @@ impl Bench<'_> {
             Method::March { view, sun } => format!("march {view}x{sun}"),
         };
         let Times { min, median, max } = times;
-        println!("{name:<22} {min:>9.3} {median:>9.3} {max:>9.3}            {:>9}", megabytes(gpu.memory()));
+        line(&format!(
+            "{name:<22} {min:>9.3} {median:>9.3} {max:>9.3}            {:>9}",
+            megabytes(gpu.memory())
+        ))?;
         Ok(times)
     }
 
     fn say_textures(&self) -> Result<()> {
         let bytes = megabytes(Some(self.bake.texture_bytes() as u64));
-        println!(
+        line(&format!(
             "memory: all that the GPU holds, the picture with it; the bake's textures are {bytes} MB of it"
-        );
+        ))?;
         Ok(())
     }
 }

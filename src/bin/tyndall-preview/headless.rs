@@ -10,6 +10,7 @@ use crate::painter::{Look, Painter};
 use crate::target::{SHOWN, Target};
 use std::io::BufWriter;
 use std::path::Path;
+use tyndall::output::print;
 use tyndall::{Error, Result};
 
 /// Draws the frame of the options and writes it as PNG.
@@ -20,8 +21,7 @@ pub fn run(gpu: &Gpu, bake: &Bake, options: &Options, out: &Path) -> Result<()> 
     write_rgba(out, view.size, &pixels(gpu, bake, &view, &look)?)?;
     let [width, height] = view.size;
     let (layout, ev) = (bake.layout.name(), exposure::ev100(view.exposure));
-    println!("{}: {width}x{height}, {layout}, EV100 {ev:.2}, on {}", out.display(), gpu.name());
-    Ok(())
+    print(&format!("{}: {width}x{height}, {layout}, EV100 {ev:.2}, on {}\n", out.display(), gpu.name()))
 }
 
 /// The texels' bytes of a frame.

@@ -28,16 +28,18 @@ use bake::Bake;
 use clap::Parser;
 use gpu::Gpu;
 use options::Options;
-use std::io::Write;
-use tyndall::Error;
+use tyndall::{Error, output};
 
 fn main() -> std::process::ExitCode {
     hush();
-    match run(&Options::parse()) {
+    let result = match Options::try_parse() {
+        Ok(options) => run(&options).and_then(|()| output::heard()),
+        Err(error) => output::refused(&error),
+    };
+    match result {
         Ok(()) => std::process::ExitCode::SUCCESS,
         Err(error) => {
-            // Not eprintln, which panics where nobody reads stderr: the exit code would be lost.
-            let _ = writeln!(std::io::stderr(), "error: {error}");
+            output::say(&format!("error: {error}"));
             error.exit_code().into()
         }
     }
@@ -63,7 +65,7 @@ fn run(options: &Options) -> tyndall::Result<()> {
     }
     if let Some(csv) = &options.points {
         let depth = options.depth(&bake)?;
-        return points::run(&gpu, &bake, csv, options.hand_filtered, depth, &mut std::io::stdout().lock());
+        return points::run(&gpu, &bake, csv, options.hand_filtered, depth);
     }
     if options.bench {
         return bench::run(&gpu, &bake, options);

@@ -7,23 +7,17 @@ use crate::resources::{Baked, Method, look_ups, overrides, water_look_ups};
 use crate::sea::Sea;
 use std::io::Write;
 use std::path::Path;
+use tyndall::Result;
+use tyndall::output::stream;
 use tyndall::points::{Answer, Point, read_points, write_answers};
 use tyndall::sky::Channels;
 use tyndall::sky::water::WaterView;
-use tyndall::{Error, Result};
 
 /// Reads views, asks the GPU, writes the answers.
 ///
 /// # Errors
 /// `File` for views that cannot be read, `Argument` for one that never meets the water that is asked for.
-pub fn run(
-    gpu: &Gpu,
-    bake: &Bake,
-    points: &Path,
-    hand_filtered: bool,
-    depth: f64,
-    out: &mut dyn Write,
-) -> Result<()> {
+pub fn run(gpu: &Gpu, bake: &Bake, points: &Path, hand_filtered: bool, depth: f64) -> Result<()> {
     let points = read_points(points)?;
     if bake.water.is_some() {
         points.iter().try_for_each(|p| WaterView::meet(bake.radii()[0], depth, p).map(|_| ()))?;
@@ -38,18 +32,17 @@ pub fn run(
         Some(water) => Channels::Wavelengths(water.sky.wavelengths_nm.clone()),
         None => bake.sky.channels(),
     };
-    let written = match channels {
+    match channels {
         Channels::Wavelengths(nm) => {
             let rows = points.iter().zip(&answers).flat_map(|(p, v)| {
                 nm.iter().zip(v).map(move |(&wavelength_nm, &v)| {
                     (*p, Answer { wavelength_nm, radiance: f64::from(v), stderr: None })
                 })
             });
-            write_answers(out, rows)
+            stream(|out| write_answers(out, rows))
         }
-        Channels::Rgb => colours(out, &points, &answers),
-    };
-    written.map_err(|e| Error::machine("standard output", e))
+        Channels::Rgb => stream(|out| colours(out, &points, &answers)),
+    }
 }
 
 fn colours(out: &mut dyn Write, points: &[Point], answers: &[[f32; 4]]) -> std::io::Result<()> {

@@ -17,6 +17,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant, SystemTime};
 use tyndall::export::manifest::MANIFEST;
+use tyndall::output::{print, say};
 use tyndall::{Error, Result};
 use winit::application::ApplicationHandler;
 use winit::error::EventLoopError;
@@ -167,7 +168,7 @@ impl App {
             self.controls.depth = self.controls.depth.min(self.controls.deepest);
         }
         if let Err(error) = outcome {
-            eprintln!("error: {error}");
+            say(&format!("error: {error}"));
         }
     }
 
@@ -179,7 +180,7 @@ impl App {
             Some(name) => self.bake.waters().skip_while(|w| *w != name).nth(1),
         };
         if next.is_none() && shown.is_none() {
-            eprintln!("no waters in this bake (tyndall bake PRESET --waters NAME)");
+            say("no waters in this bake (tyndall bake PRESET --waters NAME)");
             return;
         }
         let next = next.map(str::to_string);
@@ -311,8 +312,7 @@ impl App {
             path = PathBuf::from(format!("preview-{:03}.png", self.shots));
         }
         write_rgba(&path, size, &bytes)?;
-        println!("{}", path.display());
-        Ok(())
+        print(&format!("{}\n", path.display()))
     }
 
     fn request(&mut self, request: Request, events: &ActiveEventLoop) -> Result<()> {

@@ -1,8 +1,9 @@
 //! `--depfile`: which files a bake depends on, in the syntax that make and ninja read.
 
 use super::Args;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::export::manifest::MANIFEST;
+use crate::export::whole;
 use crate::preset::{self, Planet};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -27,7 +28,7 @@ pub fn write(args: &Args, asked: &[String], planets: &[Option<String>]) -> Resul
         text.push_str(&rule(&bake, &needs));
         freshen(&bake);
     }
-    std::fs::write(file, text).map_err(|e| Error::machine(file, e))
+    whole::write(file, text.as_bytes())
 }
 
 /// A bake that was left alone is as good as a new one, and make shall see it newer than this program. Where that cannot

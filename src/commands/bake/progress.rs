@@ -2,8 +2,8 @@
 
 use crate::bake::settings::{Layout, Settings};
 use crate::clock::cpu_time;
+use crate::output;
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
-use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
 
 /// Name of a stage, wall time, processor time of the whole process meanwhile.
@@ -18,7 +18,7 @@ pub struct Progress {
 
 impl Progress {
     pub fn new(quiet: bool) -> Self {
-        let terminal = !quiet && std::io::stderr().is_terminal();
+        let terminal = !quiet && output::watched();
         Progress { bars: terminal.then(MultiProgress::new), quiet }
     }
 
@@ -31,8 +31,7 @@ impl Progress {
 
     /// A line that being quiet does not keep back.
     pub fn always(&self, line: &str) {
-        // Not eprintln, which panics where nobody reads stderr.
-        let write = || drop(writeln!(std::io::stderr(), "{line}"));
+        let write = || output::say(line);
         match &self.bars {
             Some(bars) => bars.suspend(write),
             None => write(),
