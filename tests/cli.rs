@@ -11,6 +11,7 @@ mod cli {
     mod differ;
     mod disk;
     mod farm;
+    mod giants;
     mod help;
     mod hostile;
     mod many;
