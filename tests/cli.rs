@@ -13,6 +13,7 @@ mod cli {
     mod differ;
     mod disk;
     mod farm;
+    mod giants;
     mod help;
     mod help_width;
     mod hostile;

@@ -79,19 +79,43 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
     files.iter().map(|file| std::fs::read(file).unwrap()).collect()
 }
 
-/// Runs a target on its seeds and on so many changes of them. Edits of files of ours need no seed: any bytes are some.
+/// The target whose bytes are choices: changes of a few of them would try little.
+const CHOICES: &str = "any_bake";
+
+/// For `xxd -r -p`, which makes a seed of it.
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The number in a variable of the environment.
+fn asked(name: &str) -> Option<u64> {
+    std::env::var(name).ok()?.parse().ok()
+}
+
+/// Runs a target on its seeds and on so many changes of them, or on so many strings of random bytes where those are
+/// choices. Edits of files of ours need no seed: any bytes are some. `TYNDALL_FUZZ_RUNS` is another number of inputs,
+/// `TYNDALL_FUZZ_SEED` gives others.
 fn run(target: &str, count: usize) {
     let seeds = seeds(target);
     assert!(!seeds.is_empty(), "{target}");
-    let mut random = Random(0x9e37_79b9_7f4a_7c15);
+    let count = asked("TYNDALL_FUZZ_RUNS").map_or(count, |runs| runs as usize);
+    let mut random = Random(0x9e37_79b9_7f4a_7c15 ^ asked("TYNDALL_FUZZ_SEED").unwrap_or(0) << 8);
     let inputs = (0..count).map(|_| {
+        if target == CHOICES {
+            return (0..100).map(|_| random.below(256) as u8).collect();
+        }
         let [seed, other] = [0, 1].map(|_| &seeds[random.below(seeds.len())]);
         changed(seed, other, &mut random)
     });
-    for input in seeds.iter().cloned().chain(inputs.collect::<Vec<_>>()) {
-        let sound = catch_unwind(AssertUnwindSafe(|| bodies::run(target, &input)));
-        assert!(sound.is_ok(), "{target}: {:?}", String::from_utf8_lossy(&input));
-    }
+    let broken = |input: &Vec<u8>| {
+        catch_unwind(AssertUnwindSafe(|| bodies::run(target, input))).is_err().then(|| {
+            let text = String::from_utf8_lossy(input);
+            format!("{text:?} {}", hex(input))
+        })
+    };
+    let broken: Vec<String> =
+        seeds.iter().cloned().chain(inputs.collect::<Vec<_>>()).filter_map(|input| broken(&input)).collect();
+    assert!(broken.is_empty(), "{target}: {} inputs:\n{}", broken.len(), broken.join("\n"));
 }
 
 macro_rules! targets {
@@ -126,4 +150,5 @@ targets! {
     package: 40,
     folder: 150,
     recolour: 4,
+    any_bake: 300,
 }

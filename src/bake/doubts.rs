@@ -1,5 +1,7 @@
-//! What the quality report says that a user must hear: tables or a medium that miss the planet's own day.
+//! What the quality report says that a user must hear: tables or a medium that miss the planet's own day, and colours
+//! that miss its own.
 
+use super::palette::{ColourError, Palette};
 use super::settings::Layout;
 use serde_json::{Map, Value};
 
@@ -9,6 +11,57 @@ const TABLES_WARNING: f64 = 0.3;
 const MEDIUM_WARNING: f64 = 0.25;
 /// The regions of the report that are day.
 const DAY: [&str; 2] = ["day", "horizon by day"];
+
+/// Between these, nm, there is neither blue nor red: wavelengths that span what eyes see lie on both sides.
+const GREEN: [f64; 2] = [500.0, 580.0];
+/// ΔE2000 on one held-out sky in twenty above which the bake warns: 1 is just visible, shipped planets have 1.3.
+const COLOUR_WARNING: f64 = 3.0;
+
+/// A warning where the wavelengths, or the four that tables keep of them, do not span what eyes see, or where the four
+/// give other colours than all.
+pub fn colours(palette: &Palette) -> Option<String> {
+    let four = palette.four_nm();
+    if four.len() < 3 {
+        return None; // Too few for any colour, of which the bake warns.
+    }
+    if !spans(&palette.wavelengths_nm) {
+        let [low, high] = ends(&palette.wavelengths_nm);
+        return Some(format!(
+            "wavelengths from {low} to {high} nm do not span what eyes see: colours need one below {} nm and one above \
+             {} nm, and those of this bake are guessed",
+            GREEN[0], GREEN[1]
+        ));
+    }
+    let list = four.iter().map(|nm| format!("{nm:.0}")).collect::<Vec<_>>().join(", ");
+    let which = format!("the four wavelengths of the tables ({list} nm)");
+    let (of_four, of_all) = (&palette.four_error, &palette.error);
+    if !spans(&four) {
+        return Some(format!("{which} do not span what eyes see: {}", felt(of_four)));
+    }
+    let which = if of_four.p95 >= of_all.p95 { which } else { "the wavelengths".to_string() };
+    let worse = if of_four.p95 >= of_all.p95 { of_four } else { of_all };
+    (worse.p95 > COLOUR_WARNING)
+        .then(|| format!("{which} do not hold all colours of this planet: {}", felt(worse)))
+}
+
+fn felt(error: &ColourError) -> String {
+    if error.median.is_nan() {
+        return "no sky of this planet tells by how much colours are off".to_string();
+    }
+    format!(
+        "colours are off by a ΔE2000 of {:.1} in the median and of {:.1} on one sky in twenty (1 is just visible)",
+        error.median, error.p95
+    )
+}
+
+fn ends(nm: &[f64]) -> [f64; 2] {
+    [nm.iter().copied().fold(f64::INFINITY, f64::min), nm.iter().copied().fold(0.0, f64::max)]
+}
+
+fn spans(nm: &[f64]) -> bool {
+    let ([low, high], [blue, red]) = (ends(nm), GREEN);
+    low < blue && high > red
+}
 
 /// Warnings where the tables of a layout are so coarse that they miss the light of their own medium by day, and where the
 /// medium of the paper is not the planet's.

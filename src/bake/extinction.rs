@@ -3,6 +3,7 @@
 //! Optical depth per wavelength rather than per RGB or per constituent: four exponentials give sunlight of any
 //! colour through any number of constituents, and nothing leaves the gamut, as RGB of T does at sunset.
 
+use super::elek2010::power_of_two;
 use super::palette::Palette;
 use super::tables::{Baked, Channel, axis};
 use crate::export::manifest::{Axis, Encoding};
@@ -10,6 +11,7 @@ use crate::medium::Medium;
 use crate::table::{Elek2010, Views};
 use crate::transport::fill::Painter;
 use crate::transport::solve::Solution;
+use half::f16;
 use rayon::prelude::*;
 
 /// Logarithms below this stand for an optical depth of 0.
@@ -54,8 +56,9 @@ pub fn table(
         .enumerate()
         .for_each(|(i, out)| row(solution, palette, &mapping, (held, matter), i, out));
     let offset = if held == Held::Plain { 0.0 } else { typical(medium, palette) };
+    let scale = if held == Held::Plain { plain_scale(&depths) } else { 1.0 };
     let encode = |v: f32| match held {
-        Held::Plain => v,
+        Held::Plain => v * scale as f32,
         Held::LogOfMean if v > 0.0 => (libm::log(f64::from(v)) - offset).max(FLOOR) as f32,
         Held::LogOfMean => FLOOR as f32,
     };
@@ -63,7 +66,9 @@ pub fn table(
     let texels =
         (0..altitudes * views).map(|n| depths[(n % altitudes) * views + n / altitudes].map(encode)).collect();
     let (quantity, unit, encoding) = match held {
-        Held::Plain => ("optical depth of the ray to the ground or to the top", "1", Encoding::linear(1.0)),
+        Held::Plain => {
+            ("optical depth of the ray to the ground or to the top", "1", Encoding::linear(1.0 / scale))
+        }
         Held::LogOfMean => (
             "optical depth of the ray to the ground or to the top over its length d (of the view axis)",
             "1/m",
@@ -78,6 +83,13 @@ pub fn table(
         encoding,
         texels,
     }
+}
+
+/// By what depths are multiplied before they are stored: 1, as in the paper, or, where halves cannot hold them so, the
+/// power of two that makes them fit.
+fn plain_scale(depths: &[[f32; 4]]) -> f64 {
+    let largest = f64::from(depths.iter().flatten().fold(0.0f32, |a, &b| a.max(b)));
+    if largest > f16::MAX.to_f64() { power_of_two(largest) } else { 1.0 }
 }
 
 fn row(

@@ -2,7 +2,7 @@
 
 use crate::clock::cpu_time;
 use crate::medium::Medium;
-use crate::transport::solve::{Orders, Resolution, Solution};
+use crate::transport::solve::{LevelCounts, Orders, Resolution, Solution};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -10,6 +10,7 @@ use std::time::Duration;
 #[derive(Default)]
 pub struct Lights {
     kept: Mutex<Vec<Kept>>,
+    coarse: bool,
 }
 
 #[derive(Clone)]
@@ -30,8 +31,14 @@ pub struct Solved {
 const MOST: usize = 2;
 
 impl Lights {
+    /// Light solved as coarsely as can be: for tests of everything but its accuracy.
+    pub fn coarse() -> Self {
+        Lights { coarse: true, ..Lights::default() }
+    }
+
     /// The light in a medium: that of a bake before, or solved now.
     pub(super) fn of(&self, medium: &Medium, resolution: &Resolution, orders: Orders) -> Solved {
+        let resolution = &if self.coarse { coarse(resolution) } else { *resolution };
         // Numbers are written so that no two are alike.
         let made_of = format!("{medium:?} {resolution:?} {orders:?}");
         let found = self.take(&made_of);
@@ -60,6 +67,12 @@ impl Lights {
     fn lock(&self) -> MutexGuard<'_, Vec<Kept>> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+fn coarse(resolution: &Resolution) -> Resolution {
+    let levels = LevelCounts { coarse: 8, ..resolution.levels };
+    let [zeniths, first_azimuths, azimuths, sun_nodes, sunlight_nodes] = [6, 4, 2, 12, 24];
+    Resolution { levels, zeniths, first_azimuths, azimuths, sun_nodes, sunlight_nodes, ..*resolution }
 }
 
 #[cfg(test)]

@@ -33,7 +33,7 @@ pub struct Palette {
     pub star_xyz: [f64; 3],
 }
 
-/// Distribution of ΔE2000.
+/// Distribution of ΔE2000; not a number where there was no sky to judge by.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColourError {
     pub median: f64,
@@ -124,7 +124,7 @@ impl Palette {
     }
 }
 
-/// ΔE2000 of weights on transfers at their wavelengths, against XYZ.
+/// ΔE2000 of weights on transfers at their wavelengths, against XYZ; not a number where none of those is lit.
 pub fn judge(weights: &[[f64; 3]], transfers: &[Vec<f64>], references: &[[f64; 3]]) -> ColourError {
     let mut errors: Vec<f64> = transfers
         .iter()
@@ -133,7 +133,8 @@ pub fn judge(weights: &[[f64; 3]], transfers: &[Vec<f64>], references: &[[f64; 3
         .map(|(t, r)| delta_e_2000_scaled(*r, weighted(weights, t)))
         .collect();
     errors.sort_by(f64::total_cmp);
-    let at = |share: f64| errors.get(((errors.len() as f64 - 1.0) * share) as usize).copied().unwrap_or(0.0);
+    let at =
+        |share: f64| errors.get(((errors.len() as f64 - 1.0) * share) as usize).copied().unwrap_or(f64::NAN);
     ColourError { median: at(0.5), p95: at(0.95), worst: at(1.0) }
 }
 
@@ -180,10 +181,13 @@ impl Sums {
     }
 
     /// The four of `count` wavelengths whose best weights leave the smallest sum of squared errors; all of them
-    /// where there are no more than four, the first four where there is no sky to choose by.
+    /// where there are no more than four, four evenly spread where there is no sky to choose by.
     fn best(&self, count: usize) -> Vec<usize> {
-        let mut best = (f64::INFINITY, (0..count.min(4)).collect());
-        if count <= 4 || self.gram.is_empty() {
+        if count <= 4 {
+            return (0..count).collect();
+        }
+        let mut best = (f64::INFINITY, (1..8).step_by(2).map(|eighth| eighth * count / 8).collect());
+        if self.gram.is_empty() {
             return best.1;
         }
         for a in 0..count {
@@ -222,5 +226,32 @@ impl Sums {
         (0..3)
             .map(|c| self.squares[c] - (0..4).map(|k| a[k][4 + c] * a[k][4 + c] / a[k][k]).sum::<f64>())
             .sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sums(transfers: &[Vec<f64>]) -> Sums {
+        let rgb = Rgb { space: crate::spectrum::ColourSpace::Srgb, white: None }.under([95.0, 100.0, 109.0]);
+        let xyz = vec![[1.0, 1.0, 1.0]; transfers.len()];
+        Sums::new(&rgb, transfers, &xyz, &vec![1.0; transfers.len()])
+    }
+
+    /// Without a sky to choose by, and with black ones, the four wavelengths are spread over all.
+    #[test]
+    fn four_wavelengths_are_spread_where_no_sky_tells() {
+        assert_eq!(sums(&[]).best(15), [1, 5, 9, 13]);
+        assert_eq!(sums(&[vec![0.0; 15]]).best(15), [1, 5, 9, 13]);
+        assert_eq!(sums(&[]).best(5), [0, 1, 3, 4]);
+        assert_eq!(sums(&[]).best(4), [0, 1, 2, 3]);
+    }
+
+    /// What nothing was judged by has no error, not one of 0.
+    #[test]
+    fn no_sky_is_no_error_of_zero() {
+        let none = judge(&[[1.0; 3]], &[], &[]);
+        assert!([none.median, none.p95, none.worst].iter().all(|v| v.is_nan()));
     }
 }

@@ -82,7 +82,7 @@ pub fn bake_in(
 
     stage("report");
     let quality = solved.quality(&palette, &filled, &skies, &files);
-    let mut warnings = solved.warnings(&quality);
+    let mut warnings = solved.warnings(&palette, &quality);
 
     let points = vectors::points(&solved.full, &settings.window);
     files
@@ -283,10 +283,11 @@ impl<'a> Solved<'a> {
     }
 
     /// What the preset, the settings and the solver leave in doubt.
-    fn warnings(&self, quality: &Map<String, Value>) -> Vec<String> {
+    fn warnings(&self, palette: &Palette, quality: &Map<String, Value>) -> Vec<String> {
         let mut out = self.planet.warnings.clone();
         out.extend(outside_vision(&self.settings.wavelengths_nm));
         out.extend(few_wavelengths(&self.settings.wavelengths_nm));
+        out.extend(doubts::colours(palette));
         let waters = &self.settings.waters.list;
         out.extend(waters.iter().flat_map(|w| w.warnings.iter().map(|t| format!("{}: {t}", w.name))));
         for (name, light) in [("full", &self.full_light), ("paper's", &self.paper_light)] {

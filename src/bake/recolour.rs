@@ -4,7 +4,7 @@
 use super::files::{Content, entry};
 use super::palette::Palette;
 use super::skies::{self, Skies};
-use super::{compact, describe, pictures, report, versions};
+use super::{compact, describe, doubts, pictures, report, versions};
 use crate::error::{Error, Result};
 use crate::export::Atlas;
 use crate::export::manifest::{Manifest, Preset, Tool};
@@ -65,6 +65,7 @@ pub fn recolour(source: &Source, wanted: &Wanted) -> Result<(Manifest, Vec<Conte
     new.settings = settings(old, wanted);
     new.quality = Value::Object(quality(old, &palette));
     new.warnings = planet.warnings.clone();
+    new.warnings.extend(doubts::colours(&palette));
     let mut made = shader::files(source.folder, &new, compact::LAYOUT)?;
     let sky = Sky::new(source.folder, &new, compact::LAYOUT, source.tables)?;
     let (picture, errors) = pictures::preview(&sky, &planet, &super::settings::window(&old.settings), &[])?;

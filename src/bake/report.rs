@@ -114,11 +114,9 @@ pub fn solver(medium: &Medium, solution: &Solution) -> Value {
 /// Colours of the weights: ΔE2000 on skies held out of their fits, and, where there is a truth to look at, what
 /// four wavelengths lose in each region.
 pub fn colours(palette: &Palette, truths: Option<&[Truth]>) -> Value {
-    let of =
-        |e: &ColourError| json!({ "median": digits(e.median), "p95": digits(e.p95), "max": digits(e.worst) });
     let mut out = json!({
-        "all_wavelengths_delta_e_2000": of(&palette.error),
-        "four_wavelengths_delta_e_2000": of(&palette.four_error),
+        "all_wavelengths_delta_e_2000": colour(&palette.error),
+        "four_wavelengths_delta_e_2000": colour(&palette.four_error),
     });
     if let Some(truths) = truths {
         out["four_wavelengths_by_region"] = four_wavelengths(palette, truths);
@@ -146,7 +144,8 @@ fn four_wavelengths(palette: &Palette, truths: &[Truth]) -> Value {
     Value::Object(out)
 }
 
-/// ΔE2000 of a colour fit on skies held out of it.
+/// ΔE2000 of a colour fit on skies held out of it; null where there is none to judge by.
 pub fn colour(error: &ColourError) -> Value {
-    json!({ "median": digits(error.median), "p95": digits(error.p95), "max": digits(error.worst) })
+    let of = |v: f64| if v.is_nan() { Value::Null } else { json!(digits(v)) };
+    json!({ "median": of(error.median), "p95": of(error.p95), "max": of(error.worst) })
 }

@@ -77,11 +77,12 @@ impl Lattice {
     }
 }
 
-/// Skies of a solved planet; `offset` 0 and 1 give two samples without a common view. Left out are dark spectra
-/// and those that end in darkness (sunlight through so much air that its blue is lost to single precision). They are
-/// those of a window where tables are for one.
+/// Share of a sample's brightest light below which light is darkness.
+const DARK: f64 = 1e-7;
+
+/// Skies of a solved planet; `offset` 0 and 1 give two samples without a common view. Left out is what is dark at every
+/// wavelength. They are those of a window where tables are for one.
 pub fn sample(solution: &Solution, medium: &Medium, offset: f64, window: &Window) -> Skies {
-    const DARK: f64 = 1e-7;
     let lattice = lattice(medium, offset, window);
     let scatterers: Vec<Vec<usize>> = (0..medium.constituents.len())
         .filter(|&c| medium.constituents[c].scatters())
@@ -97,12 +98,40 @@ pub fn sample(solution: &Solution, medium: &Medium, offset: f64, window: &Window
             *sun = *mu_s;
         }
     }
-    let largest = |t: &[f64]| t.iter().fold(0.0, |a: f64, &b| a.max(b));
-    let brightest = all.iter().fold(0.0, |a: f64, (t, _)| a.max(largest(t)));
-    let lit = |t: &[f64]| largest(t) > DARK * brightest && t.iter().all(|&v| v > DARK * largest(t));
-    let (transfers, mu_s) =
-        all.into_iter().filter(|(t, _)| t.iter().all(|v| v.is_finite()) && lit(t)).unzip();
-    Skies { transfers, mu_s }
+    // Views come first, then sunlight, twice for each sun above the horizon.
+    let views = all.len() - 2 * lattice.suns.iter().filter(|&&sun| sun > 0.0).count();
+    let sunlight = all.split_off(views);
+    Skies::of(all, sunlight)
+}
+
+fn largest(transfer: &[f64]) -> f64 {
+    transfer.iter().fold(0.0, |a: f64, &b| a.max(b))
+}
+
+impl Skies {
+    /// Views and sunlight, each with the sun's cosine, sunlight from low to high suns and in pairs, without what tells
+    /// nothing of colours: what is dark beside the brightest, and what a solver got wrong. A black wavelength beside
+    /// lit ones is a fact of a sky, and a colour to be met.
+    ///
+    /// Sunlight is left out besides where it ends in darkness that a higher sun does not have: it came through so much
+    /// air that its blue is lost to single precision.
+    fn of(views: Vec<(Vec<f64>, f64)>, sunlight: Vec<(Vec<f64>, f64)>) -> Skies {
+        let finite = |t: &[f64]| t.iter().all(|v| v.is_finite());
+        let all = views.iter().chain(&sunlight).filter(|(t, _)| finite(t));
+        let brightest = all.fold(0.0, |a: f64, (t, _)| a.max(largest(t)));
+        let black = |t: &[f64]| t.iter().map(|&v| v <= DARK * largest(t)).collect::<Vec<_>>();
+        let always = sunlight.iter().rev().nth(1).map(|(highest, _)| black(highest)).unwrap_or_default();
+        let fades = |t: &[f64]| black(t).iter().zip(&always).any(|(now, always)| *now && !always);
+        let lit = |t: &[f64]| {
+            let most = largest(t);
+            finite(t) && most > DARK * brightest && t.iter().all(|&v| v >= -DARK * most)
+        };
+        let views = views.into_iter().filter(|(t, _)| lit(t));
+        let sunlight = sunlight.into_iter().filter(|(t, _)| lit(t) && !fades(t));
+        let positive = |(t, mu_s): (Vec<f64>, f64)| (t.into_iter().map(|v| v.max(0.0)).collect(), mu_s);
+        let (transfers, mu_s) = views.chain(sunlight).map(positive).unzip();
+        Skies { transfers, mu_s }
+    }
 }
 
 /// Light of one batch of wavelengths, and the cosine of the sun, in the same order for every batch.
@@ -203,6 +232,26 @@ pub fn from_file(path: &Path, bytes: &[u8], wavelengths_nm: &[f64]) -> Result<[S
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A sky that is black at a wavelength counts as any other, and so does sunlight where that wavelength never arrives;
+    /// dark skies, sunlight that lost its blue on a long way, and what is no light do not.
+    #[test]
+    fn a_black_wavelength_is_no_reason_to_leave_a_sky_out() {
+        let sky = |t: [f64; 3]| (t.to_vec(), 0.5);
+        let views = vec![
+            sky([0.2, 0.1, 0.0]),
+            sky([0.0, 0.0, 0.3]),
+            sky([0.1, 0.1, -1e-12]),
+            sky([1e-9, 1e-9, 1e-9]),
+            sky([0.2, 0.1, -0.1]),
+            sky([f64::INFINITY, 0.1, 0.1]),
+        ];
+        let sun = [[0.0, 0.1, 0.0], [0.0, 0.01, 0.0], [0.5, 0.6, 0.0], [0.25, 0.36, 0.0]].map(sky);
+        let found = Skies::of(views, sun.to_vec()).transfers;
+        let expected =
+            [[0.2, 0.1, 0.0], [0.0, 0.0, 0.3], [0.1, 0.1, 0.0], [0.5, 0.6, 0.0], [0.25, 0.36, 0.0]];
+        assert_eq!(found, expected.map(|t| t.to_vec()));
+    }
 
     /// What was sampled comes back bit for bit, in its sample and order.
     #[test]

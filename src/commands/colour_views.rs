@@ -2,7 +2,7 @@
 //! radiance over the star's irradiance.
 
 use super::colour_input::{Named, number, one_spectrum};
-use super::text::talk;
+use super::text::say;
 use crate::error::{Error, Result};
 use crate::points::COLUMNS;
 use crate::preset::read_spectrum;

@@ -83,12 +83,11 @@ pub fn run(args: &Args) -> Result<()> {
     staging.write(MANIFEST, new.to_json()?.as_bytes())?;
     staging.commit()?;
     let error = &new.quality["colour"]["four_wavelengths_delta_e_2000"];
-    print(&format!(
-        "{}: ΔE2000 of the four wavelengths: median {}, 95 % below {}\n",
-        target.display(),
-        error["median"],
-        error["p95"]
-    ))
+    let felt = match error["median"].as_f64() {
+        Some(median) => format!("median {median}, 95 % below {}", error["p95"]),
+        None => "no sky to tell it by".to_string(),
+    };
+    print(&format!("{}: ΔE2000 of the four wavelengths: {felt}\n", target.display()))
 }
 
 fn wanted(args: &Args, manifest: &Manifest) -> Result<Wanted> {

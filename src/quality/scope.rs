@@ -75,8 +75,10 @@ impl Scope {
         // Even in the square of the distance at which the ray passes the centre; just inside the shell's edge, where a
         // ray has some length.
         let square = |elevation: f64| 1.0 - sine(elevation) * sine(elevation);
-        let most = 0.998 * (top / r) * (top / r);
-        let least = if self.sky_only { (ground / r) * (ground / r) * (1.0 + 1e-9) } else { 0.0 };
+        let [disc, whole] = [(ground / r) * (ground / r), (top / r) * (top / r)];
+        let least = if self.sky_only { disc * (1.0 + 1e-9) } else { 0.0 };
+        // In air so thin that those are on the planet's disc, half of what is seen of the shell beside it.
+        let most = (0.998 * whole).max(disc + 0.5 * (whole - disc)).max(least);
         let ends = self.elevations.map(|e| square(e.min(0.0)).clamp(least, most));
         -(1.0 - between(ends, u)).sqrt()
     }

@@ -39,6 +39,50 @@ fn every_table_in_every_container() {
     assert!(found.out.contains("compact/phase.npy: is missing"), "{}", found.out);
 }
 
+/// Engines go by sizes: tables of one or two axes (`irradiance` has one) are 2D with rows, those of more are 3D with
+/// slices, also in a window of one sun without azimuths.
+#[test]
+fn engines_find_the_dimensions_that_shaders_bind() {
+    let volume = |table: &Value| table["axes"].as_array().unwrap().len() > 2;
+    let word = |file: &[u8], at: usize| u32::from_le_bytes(file[at..at + 4].try_into().unwrap());
+    let dir = tempfile::tempdir().unwrap();
+    let sizes =
+        ["--size", "elek2010=4x8x1x1", "--size", "compact=4x8x1x1", "--size", "compact-single=4x8x1x1"];
+    let common = [
+        "--formats",
+        "ktx2,dds",
+        "--suns",
+        "35",
+        "--altitudes",
+        "0m",
+        "--wavelengths",
+        "3",
+        "--orders",
+        "1",
+        "--quiet",
+    ];
+    let mut command = command();
+    command.args(["bake", "earth", "--out"]).arg(dir.path()).args(sizes).args(common);
+    let done = ran(command.output().unwrap());
+    assert_eq!(done.code, Some(0), "{}", done.err);
+    let bake = dir.path().join("earth");
+    let held = files(&bake);
+    for table in tables(&manifest(&bake)) {
+        let file = table["file"].as_str().unwrap().strip_suffix(".exr").unwrap();
+        let (ktx2, dds) = (&held[&format!("{file}.ktx2")], &held[&format!("{file}.dds")]);
+        assert!(word(ktx2, 20) == word(dds, 16) && (volume(table) || word(dds, 16) >= 2), "{file}");
+        // Height and depth; of DDS also the resource's dimension, which is 3 for 2D.
+        let found = [word(ktx2, 24), word(ktx2, 28), word(dds, 12), word(dds, 24), word(dds, 132)];
+        let volume = volume(table);
+        let right = match found {
+            [height, 0, other, 0 | 1, 3] => !volume && height == other && height >= 2,
+            [_, depth, _, other, 4] => volume && depth == other && depth >= 2,
+            _ => false,
+        };
+        assert!(right, "{file}: {found:?}");
+    }
+}
+
 /// In a column the slices lie one below the other; what the tables answer is the same, bit for bit.
 #[test]
 fn slices_in_a_column() {

@@ -4,7 +4,6 @@
 use crate::bake::Bake;
 use crate::camera::Camera;
 use crate::frame::View;
-use std::io::Write;
 use tyndall::points::Point;
 
 /// Rows and columns of the directions that are looked at.
@@ -37,7 +36,7 @@ fn line(bake: &Bake, point: &Point) -> Option<(&'static str, String)> {
     Some((key, format!("{key} = {value:.6}: {reason}; the nearest that they hold is drawn")))
 }
 
-/// A warning on stderr. Not eprintln, which panics where nobody reads it.
+/// A warning on standard error.
 pub fn warn(text: &str) {
-    let _ = writeln!(std::io::stderr(), "warning: {text}");
+    tyndall::output::say(&format!("warning: {text}"));
 }

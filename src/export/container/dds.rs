@@ -7,8 +7,7 @@ use ddsfile::{AlphaMode, Caps2, D3D10ResourceDimension, Dds, DxgiFormat, NewDxgi
 /// The bytes of the file; `name` is for messages.
 pub fn file(volume: &Volume, name: &str) -> Result<Vec<u8>> {
     let refuse = |e: ddsfile::Error| Error::Argument(format!("{name}: DDS: {e}"));
-    let [width, height, _] = volume.size;
-    let depth = volume.depth();
+    let Volume { width, height, depth, .. } = *volume;
     let flat = depth.is_none();
     let parameters = NewDxgiParams {
         height,

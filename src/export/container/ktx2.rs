@@ -22,13 +22,12 @@ pub fn file(volume: &Volume, name: &str) -> Result<Vec<u8>> {
     let at_descriptor = Header::LENGTH + LevelIndex::LENGTH;
     let at_pairs = at_descriptor + descriptor.len();
     let at_texels = (at_pairs + pairs.len()).next_multiple_of(ALIGNMENT);
-    let [pixel_width, pixel_height, _] = volume.size;
     let header = Header {
         format: Some(format),
         type_size,
-        pixel_width,
-        pixel_height,
-        pixel_depth: volume.depth().unwrap_or(0),
+        pixel_width: volume.width,
+        pixel_height: volume.height,
+        pixel_depth: volume.depth.unwrap_or(0),
         layer_count: 0,
         face_count: 1,
         level_count: 1,

@@ -90,6 +90,14 @@ fn pictures(product: &Product) -> BTreeMap<String, BTreeMap<String, Atlas>> {
     out
 }
 
+/// The sky of a layout of a bake in memory.
+pub fn opened(product: &Product, layout: Layout) -> Sky {
+    let empty = BTreeMap::new();
+    let pictures = pictures(product);
+    let of_layout = pictures.get(layout.name()).unwrap_or(&empty);
+    Sky::new(file(), &product.manifest, layout.name(), of_layout).expect("a layout of the bake")
+}
+
 fn bytes_of<'a>(product: &'a Product, name: &str) -> &'a [u8] {
     &product.files.iter().find(|f| f.0 == name).expect("a file of the bake").1
 }

@@ -1,7 +1,9 @@
 //! What fuzzing runs, a function for each kind of input: it panics where an input is neither refused in one line nor
 //! taken as something sound. Shared by the targets of cargo-fuzz and by the test `fuzzed`, which needs no fuzzer.
 
+mod any_bake;
 mod bakes;
+mod choices;
 mod edits;
 mod options;
 mod package;
@@ -15,7 +17,7 @@ use std::path::Path;
 pub type Body = fn(&[u8]);
 
 /// Name and function of every kind of input.
-pub const ALL: [(&str, Body); 17] = [
+pub const ALL: [(&str, Body); 18] = [
     ("planet", presets::planet),
     ("water", presets::water),
     ("scene", presets::scene),
@@ -33,6 +35,7 @@ pub const ALL: [(&str, Body); 17] = [
     ("package", package::tables),
     ("folder", bakes::folder),
     ("recolour", bakes::recoloured),
+    ("any_bake", any_bake::any_bake),
 ];
 
 /// Runs the function of a name.
