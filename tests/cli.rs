@@ -13,6 +13,7 @@ mod cli {
     mod farm;
     mod help;
     mod hostile;
+    mod losses;
     mod many;
     mod media;
     mod options;

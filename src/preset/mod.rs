@@ -10,6 +10,7 @@ mod files;
 mod fournier_forand;
 mod json;
 mod library;
+mod lost;
 mod overrides;
 mod phase;
 mod planet;
