@@ -19,6 +19,7 @@ mod cli {
     mod hostile;
     mod kept;
     mod limits;
+    mod losses;
     mod many;
     mod media;
     mod names;

@@ -87,6 +87,33 @@ pub fn tables(quality: &Map<String, Value>) -> Vec<String> {
     out
 }
 
+/// Warnings where the tables for observers under a water miss the water's own light.
+pub fn underwater(quality: &Map<String, Value>) -> Vec<String> {
+    let waters = quality.get("water").and_then(Value::as_object);
+    let warning = |(name, found): (&String, &Value)| {
+        let found = &found["underwater_tables_against_solver"];
+        let [median, p95] = ["median", "p95"].map(|key| found[key].as_f64().unwrap_or(0.0));
+        (p95 > TABLES_WARNING).then(|| {
+            let worst = &found["worst"];
+            format!(
+                "{name}: tables --underwater: half of the views are off by more than {}, one in twenty by more than {}; most, \
+                 by {}, at a depth of {} m of {} m and {} nm; `sample --exact` is right",
+                percent(median),
+                percent(p95),
+                percent(found["max"].as_f64().unwrap_or(0.0)),
+                worst["observer_depth_m"],
+                worst["depth_m"],
+                worst["nm"],
+            )
+        })
+    };
+    waters.into_iter().flatten().filter_map(warning).collect()
+}
+
+fn percent(error: f64) -> String {
+    if error < 10.0 { format!("{:.0} %", 100.0 * error) } else { format!("{error:.0} times") }
+}
+
 fn coarse(layout: Layout, error: f64) -> String {
     let percent = if error < 100.0 { format!("{:.0} %", 100.0 * error) } else { "any measure".into() };
     let mend = match layout {

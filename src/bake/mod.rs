@@ -1,5 +1,6 @@
 //! From a planet to the bytes of every file: solve, choose colours, fill every layout, encode, report.
 
+mod coarse;
 pub mod compact;
 pub(crate) mod describe;
 mod doubts;

@@ -8,8 +8,8 @@ use super::settings::{Layout, Settings, Solver};
 use super::tables::Baked;
 use super::water::WaterTables;
 use super::{
-    compact, describe, elek2010, extinction, pictures, report, skies, spectral, three_atmosphere, vectors,
-    water,
+    coarse, compact, describe, elek2010, extinction, pictures, report, skies, spectral, three_atmosphere,
+    vectors, water,
 };
 use crate::error::{Error, Result};
 use crate::export::manifest::Manifest;
@@ -273,7 +273,8 @@ impl<'a> Solved<'a> {
         if let Some(tables) = &filled.waters {
             let (medium, light) = self.best();
             let waters = &self.settings.waters.list;
-            let found = water::report(waters, medium, light, palette, tables, &skies.waters);
+            let orders = self.settings.waters.orders;
+            let found = water::report(waters, medium, light, palette, tables, &skies.waters, orders);
             out.insert("water".into(), found);
         }
         let mut counts = filled.counts.clone();
@@ -288,6 +289,7 @@ impl<'a> Solved<'a> {
         out.extend(outside_vision(&self.settings.wavelengths_nm));
         out.extend(few_wavelengths(&self.settings.wavelengths_nm));
         out.extend(doubts::colours(palette));
+        out.extend(coarse::sheets(&self.full, self.settings));
         let waters = &self.settings.waters.list;
         out.extend(waters.iter().flat_map(|w| w.warnings.iter().map(|t| format!("{}: {t}", w.name))));
         for (name, light) in [("full", &self.full_light), ("paper's", &self.paper_light)] {
@@ -300,6 +302,7 @@ impl<'a> Solved<'a> {
             }
         }
         out.extend(doubts::tables(quality));
+        out.extend(doubts::underwater(quality));
         out
     }
 }

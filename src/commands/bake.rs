@@ -393,6 +393,7 @@ fn make(folder: &Path, settings: &Settings, progress: &Progress, planet: &Planet
         warnings: product.manifest.warnings,
         quality: product.manifest.quality.as_object().cloned().unwrap_or_default(),
         stages: clock.finish(),
+        need,
         reused: false,
     })
 }

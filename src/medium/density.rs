@@ -51,6 +51,22 @@ impl DensityProfile {
         }
     }
 
+    /// Altitude (m) above which there is nothing; infinite for an exponential.
+    pub fn end(&self) -> f64 {
+        match self {
+            DensityProfile::Exponential { .. } => f64::INFINITY,
+            _ => self.kinks().into_iter().fold(0.0, f64::max),
+        }
+    }
+
+    /// Height (m) over which the density falls by e; infinite but for an exponential.
+    pub fn scale(&self) -> f64 {
+        match self {
+            DensityProfile::Exponential { scale_height } => *scale_height,
+            _ => f64::INFINITY,
+        }
+    }
+
     /// Vertical column ∫ density dz between two altitudes, m.
     pub fn column(&self, from: f64, to: f64) -> f64 {
         if let DensityProfile::Exponential { scale_height } = self {

@@ -3,12 +3,16 @@
 
 mod check;
 mod density;
+mod losses;
 mod phase;
+mod sheets;
 mod water;
 
 pub use check::{MOST_NODES, check_shell};
 pub use density::DensityProfile;
+pub use losses::Cut;
 pub use phase::PhaseFunction;
+pub use sheets::Sheet;
 pub use water::{WaterMedium, WaterScatterer};
 
 /// What a constituent's scattered light counts as in tables that keep gas and aerosol apart.

@@ -12,6 +12,7 @@ mod fournier_forand;
 mod json;
 mod kind;
 mod library;
+mod lost;
 mod overrides;
 mod phase;
 mod planet;

@@ -105,7 +105,7 @@ pub struct Planet {
     pub star: Star,
     /// In the order of the file; none is a vacuum.
     pub constituents: Vec<Substance>,
-    /// What was assumed where the file says nothing, one line each.
+    /// What was assumed where the file says nothing, and what the top loses, one line each.
     pub warnings: Vec<String>,
 }
 

@@ -1,6 +1,7 @@
 //! The top level of a preset: name, ground, top, star, constituents → [`Planet`].
 
 use super::bounds::{Bounds, POSITIVE};
+use super::lost::lost;
 use super::planet::{Planet, Star};
 use super::raw::Raw;
 use super::read_constituent::constituent;
@@ -46,15 +47,16 @@ pub fn planet(raw: &Raw) -> Result<Planet> {
     let mut warnings: Vec<String> = held("ground albedo", &ground_albedo).into_iter().collect();
     warnings.extend(held("spectrum of the star", &star.irradiance));
     let mut constituents = Vec::new();
-    for item in raw.need("constituents")?.items()? {
-        let (substance, about) = constituent(&item, height)?;
+    let items = raw.need("constituents")?.items()?;
+    for item in &items {
+        let (substance, about) = constituent(item, height)?;
         if constituents.iter().any(|c: &super::Substance| c.name == substance.name) {
             return Err(item.need("name")?.refuse("another constituent has this name"));
         }
         warnings.extend(about);
         constituents.push(substance);
     }
-    let planet = Planet {
+    let mut planet = Planet {
         name: name(raw)?,
         description: raw.need("description")?.text()?.to_string(),
         ground_radius,
@@ -69,6 +71,7 @@ pub fn planet(raw: &Raw) -> Result<Planet> {
     if let Err(reason) = medium.check() {
         return Err(raw.need("constituents")?.refuse(reason));
     }
+    planet.warnings.extend(lost(&medium, &top, &items)?);
     Ok(planet)
 }
 

@@ -19,6 +19,7 @@ mod shared;
 mod skylight;
 mod trial;
 mod underwater;
+mod within;
 
 use super::palette::Palette;
 use super::settings::Settings;

@@ -1,5 +1,6 @@
 //! What the water tables lose, and what the paper's simplifications cost, by water.
 
+use super::within::Judge;
 use super::{FINE, Skylight, WaterTables, slabs};
 use crate::bake::palette::Palette;
 use crate::bake::report::{DARK, colour};
@@ -50,7 +51,8 @@ impl Sun {
 }
 
 /// Errors of the tables against the slab solver, of the single-scattering shortcut, of the azimuth left out, of
-/// the sky taken in parts or for even, of the colours, and of the paper's Fresnel term.
+/// the sky taken in parts or for even, of the colours, and of the paper's Fresnel term. Tables for observers under water
+/// hold the sun's light scattered so often as `orders` says.
 pub fn report(
     waters: &[Water],
     medium: &Medium,
@@ -58,8 +60,10 @@ pub fn report(
     palette: &Palette,
     tables: &WaterTables,
     skies: &[WaterSky],
+    orders: WaterOrders,
 ) -> Value {
     let mut out = Map::new();
+    let judge = Judge { medium, solution, palette, tables, orders };
     let suns: Vec<Sun> = SUNS.par_iter().map(|&s| Sun::new(medium, solution, palette, tables, s)).collect();
     for (water, sky) in waters.iter().zip(skies) {
         let media = water.medium(&palette.four_nm());
@@ -119,6 +123,9 @@ pub fn report(
             "even_sky_against_the_whole_sky": Distribution::of(part(3)).json(),
             "lazanyi_szirmay_kalos_largest_error_of_reflectance": digits((0..=1000).map(off).fold(0.0, f64::max)),
         });
+        if let Some(found) = judge.report(water, &media, &slabs, sky) {
+            entry["underwater_tables_against_solver"] = found;
+        }
         if let Some([sky, own]) = tables.colours.get(&water.name) {
             entry["four_wavelengths_delta_e_2000"] = colour(own);
             entry["four_wavelengths_delta_e_2000_with_the_weights_of_the_sky"] = colour(sky);

@@ -58,6 +58,7 @@ pub fn current(folder: &Path, planet: &Planet, settings: &Settings) -> Option<Do
         warnings: manifest.warnings,
         quality: manifest.quality.as_object().cloned().unwrap_or_default(),
         stages: Vec::new(),
+        need: 0,
         reused: true,
     })
 }

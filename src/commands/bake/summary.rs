@@ -16,6 +16,8 @@ pub struct Done {
     pub warnings: Vec<String>,
     pub quality: Map<String, Value>,
     pub stages: Vec<Stage>,
+    /// Memory that the bake was thought to take, bytes; 0 where nothing was solved.
+    pub need: u64,
     /// It stood there already, and nothing was solved.
     pub reused: bool,
 }
@@ -39,7 +41,7 @@ impl Done {
     /// Of a bake that was looked at and left.
     pub fn nothing(folder: PathBuf) -> Self {
         let (warnings, quality, stages) = Default::default();
-        Done { folder, files: 0, bytes: 0, warnings, quality, stages, reused: true }
+        Done { folder, files: 0, bytes: 0, warnings, quality, stages, need: 0, reused: true }
     }
 
     /// Largest error of the tables of all layouts against direct integration of their own medium.
@@ -59,7 +61,11 @@ impl Done {
             };
             regions(layout.report_key()).for_each(found);
         }
-        regions("water").for_each(|(water, found)| look("water", water, &found["tables_against_solver"]));
+        for (layout, key) in
+            [("water", "tables_against_solver"), ("underwater", "underwater_tables_against_solver")]
+        {
+            regions("water").for_each(|(water, found)| look(layout, water, &found[key]));
+        }
         worst
     }
 
@@ -87,6 +93,7 @@ impl Done {
             "energy_balance_error": self.balance(),
             "warnings": self.warnings,
             "quality": self.quality,
+            "estimated_memory_bytes": self.need,
             "perf": self.stages.iter().map(stage).collect::<Vec<_>>(),
         })
     }
@@ -121,7 +128,13 @@ pub fn tell(outcomes: &[Outcome], as_json: bool, perf: bool) -> Result<()> {
         let bakes = outcomes.iter().filter_map(|o| o.result.as_ref().ok());
         bakes.for_each(|done| out.push_str(&format!("{}{}", headline(done), times(&done.stages))));
         if let Some(peak) = memory::peak() {
-            out.push_str(&format!("  peak memory {:.0} MB\n", peak as f64 / 1e6));
+            let need = outcomes.iter().filter_map(|o| o.result.as_ref().ok()).map(|done| done.need).max();
+            let megabytes = |bytes: u64| bytes as f64 / 1e6;
+            out.push_str(&format!(
+                "  peak memory {:.0} MB, estimated {:.0} MB\n",
+                megabytes(peak),
+                megabytes(need.unwrap_or(0))
+            ));
         }
     }
     match outcomes {
