@@ -127,11 +127,7 @@ fn a_chart_on_a_full_disk() {
         .args(["chart", "earth-blog", "--views", "1", "--only", "Nishita", "--quiet", "--out"])
         .arg(disk.path());
     let done = ran(chart.output().unwrap());
-    assert!(
-        done.code == Some(3) && done.err.contains("earth-blog.svg: No space left"),
-        "{size}: {}",
-        done.err
-    );
+    assert!(done.code == Some(3) && done.err.contains("earth-blog.svg: No space left"), "{}", done.err);
     assert!(!done.err.contains(".tyndall"), "{}", done.err);
     let left: Vec<String> = files(disk.path()).into_keys().collect();
     let whole = |name: &String| [".csv", ".svg", ".png", ".json"].iter().any(|end| name.ends_with(end));
