@@ -21,7 +21,7 @@ fn warning(medium: &Medium, sheet: &Sheet, layouts: &[(Layout, Vec<Elek2010>)]) 
     let coarse: Vec<String> = layouts
         .iter()
         .map(|(layout, tables)| (layout.name(), spacing(tables)))
-        .filter(|(_, step)| *step > sheet.thickness())
+        .filter(|(_, step)| FILLED * step > sheet.thickness())
         .map(|(name, step)| format!("{step:.0} m (layout {name})"))
         .collect();
     if coarse.is_empty() {
@@ -36,6 +36,10 @@ fn warning(medium: &Medium, sheet: &Sheet, layouts: &[(Layout, Vec<Elek2010>)]) 
         coarse.join(" and ")
     ))
 }
+
+/// Share of the way from one altitude to the next from which on a sheet is met by both: what is interpolated between them
+/// is then more sheet than not.
+const FILLED: f64 = 0.75;
 
 /// Three significant digits, written out.
 fn digits(v: f64) -> f64 {

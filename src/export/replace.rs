@@ -72,7 +72,11 @@ pub fn replace(new: &Path, target: &Path, aside: &Path, mut way: Way) -> Result<
             match way {
                 Way::Exchange => swap(new, target).map(|()| Some(new.to_path_buf())),
                 Way::Aside => move_aside(new, target, aside).map(|()| Some(aside.to_path_buf())),
-                Way::InPlace => in_place::put(new, target, aside).map(|()| Some(aside.to_path_buf())),
+                Way::InPlace => in_place::put(new, target, aside).map(|()| {
+                    // Its files are in the target now.
+                    let _ = fs::remove_dir_all(new);
+                    Some(aside.to_path_buf())
+                }),
             }
         };
         match step {

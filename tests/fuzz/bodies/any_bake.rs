@@ -16,6 +16,7 @@ use tyndall::sky::{AerosolPhase, Component};
 
 pub fn any_bake(bytes: &[u8]) {
     let mut choices = Choices::new(bytes);
+    choices.heavy = choices.one_in(if is_fine() { 4 } else { 64 });
     let shell = shell(&mut choices);
     let text = planet(&mut choices, shell).to_string();
     let words = options(&mut choices, shell[1]);
@@ -28,6 +29,11 @@ pub fn any_bake(bytes: &[u8]) {
     if tells {
         eprintln!("{}", ended.map_or_else(|error| error.to_string(), |()| "baked".into()));
     }
+}
+
+/// Whether light is solved as users have it, and what takes long comes often.
+fn is_fine() -> bool {
+    std::env::var_os("TYNDALL_FUZZ_FINE").is_some()
 }
 
 /// What became of a planet and options: nothing but a sound bake or a refusal.
@@ -43,9 +49,7 @@ fn bake(text: &str, words: &[String], height: f64) -> Result<(), Error> {
     let found = Args::augment_args(Command::new("bake")).try_get_matches_from(words).expect("known options");
     let args = Args::from_arg_matches(&found).expect("what the parser took");
     let settings = settings_of(&args, &planet).map_err(refused)?;
-    // As fine as users have it where a long run asks for that.
-    let fine = std::env::var_os("TYNDALL_FUZZ_FINE").is_some();
-    let lights = if fine { Lights::default() } else { Lights::coarse() };
+    let lights = if is_fine() { Lights::default() } else { Lights::coarse() };
     let product = bake_in(&lights, &planet, &settings, &mut |_| {}).map_err(refused)?;
     settings.layouts.iter().for_each(|layout| sound(&product, height, *layout));
     Ok(())
@@ -116,7 +120,8 @@ fn profile(choices: &mut Choices, height: f64) -> Value {
 }
 
 fn coefficient(choices: &mut Choices) -> Value {
-    let depths = [choices.power(1e-3, 10.0), choices.power(1e-9, 9.9e4), 0.0];
+    let thick = if choices.heavy { 9.9e4 } else { 3.0 };
+    let depths = [choices.power(1e-3, 10.0), choices.power(1e-9, thick), 0.0];
     let depth = choices.of(&depths);
     match choices.below(3) {
         0 => json!({ "kind": "constant", "optical_depth": depth, "source": "x" }),
@@ -154,10 +159,8 @@ fn phase(choices: &mut Choices) -> Value {
 /// Options of `bake`, mostly ones that go together.
 fn options(choices: &mut Choices, height: f64) -> Vec<String> {
     // The fixed tables of three-atmosphere take as long as fifty bakes of the others.
-    let layout = match choices.below(256) {
-        255 => "three-atmosphere",
-        n => ["compact", "elek2010", "elek2010", "elek2010,compact"][n % 4],
-    };
+    let layouts = ["elek2010", "compact", "elek2010", "elek2010,compact", "three-atmosphere"];
+    let layout = choices.of(&layouts[..if choices.heavy { 5 } else { 4 }]);
     let mut out = window(choices, height);
     let has = |out: &[String], start: &str| out.iter().any(|option| option.starts_with(start));
     let alone = |window: bool| if window { 1 } else { 2 };
@@ -174,7 +177,7 @@ fn options(choices: &mut Choices, height: f64) -> Vec<String> {
     ));
     let waves = ["550", "2", "3", "4", "450,550,650", "200,550,2000", "500,500.0001", "380,390,400,410"];
     out.push(format!("--wavelengths={}", choices.of(&waves)));
-    out.push(format!("--orders={}", if choices.one_in(12) { "auto" } else { choices.of(&["1", "2"]) }));
+    out.push(format!("--orders={}", if choices.heavy { "auto" } else { choices.of(&["1", "2"]) }));
     // Options that go with the others, but for once in a while.
     let any = choices.one_in(32);
     let (paper, compact) = (any || layout.contains("elek2010"), any || layout.contains("compact"));
@@ -191,7 +194,7 @@ fn options(choices: &mut Choices, height: f64) -> Vec<String> {
         (choices.of(&["--white=star", "--white=0.3,0.3"]), 5, true),
     ];
     out.extend(rare.into_iter().filter(|r| choices.one_in(r.1) && r.2).map(|r| r.0.into()));
-    if choices.one_in(12) {
+    if choices.heavy && choices.one_in(3) {
         out.extend(["--waters=muddy", "--size=water=2x2x2"].map(String::from));
         out.extend(choices.one_in(2).then(|| "--underwater".into()));
         out.push(format!("--water-orders={}", choices.of(&["1", "2"])));

@@ -1,14 +1,18 @@
 //! Choices from bytes: as long as there are some; then the first of each.
 
-pub struct Choices<'a>(std::slice::Iter<'a, u8>);
+pub struct Choices<'a> {
+    bytes: std::slice::Iter<'a, u8>,
+    /// What takes long may be chosen too.
+    pub heavy: bool,
+}
 
 impl<'a> Choices<'a> {
     pub fn new(bytes: &'a [u8]) -> Self {
-        Choices(bytes.iter())
+        Choices { bytes: bytes.iter(), heavy: false }
     }
 
     pub fn below(&mut self, n: usize) -> usize {
-        self.0.next().map_or(0, |&byte| usize::from(byte) % n)
+        self.bytes.next().map_or(0, |&byte| usize::from(byte) % n)
     }
 
     pub fn of<T: Copy>(&mut self, all: &[T]) -> T {
