@@ -146,7 +146,9 @@ fn json_answers_parse() {
         || serde_json::from_str::<Value>(&tyndall(&["verify", folder.to_str().unwrap(), "--json"]).out);
     assert_eq!(verified().unwrap()["holds"], true);
     fs::write(folder.join("notes.txt"), "mine").unwrap();
-    assert_eq!(verified().unwrap()["differences"][0]["place"], "notes.txt");
+    assert_eq!(verified().unwrap()["foreign"][0], "notes.txt");
+    fs::write(folder.join("preview.png"), "mine").unwrap();
+    assert_eq!(verified().unwrap()["differences"][0]["place"], "preview.png");
     for line in ["presets list --json", "presets show earth --json", "colour --blackbody 5778 --json"] {
         assert!(serde_json::from_str::<Value>(&words(line).out).is_ok(), "{line}");
     }

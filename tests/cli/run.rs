@@ -30,8 +30,21 @@ pub struct Ran {
     pub err: String,
 }
 
+/// The program, which hears Ctrl-C even where these tests run in the background of a shell, which ignores it there.
 pub fn command() -> Command {
-    Command::new(env!("CARGO_BIN_EXE_tyndall"))
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tyndall"));
+    #[cfg(unix)]
+    {
+        use std::os::unix::process::CommandExt;
+        let heard = || {
+            // SAFETY: no handler is named.
+            unsafe { libc::signal(libc::SIGINT, libc::SIG_DFL) };
+            Ok(())
+        };
+        // SAFETY: a call that may be made between fork and exec.
+        unsafe { command.pre_exec(heard) };
+    }
+    command
 }
 
 pub fn ran(output: Output) -> Ran {

@@ -148,7 +148,16 @@ fn child_that_bakes_for_ever() {
 
 /// Starts the child and waits until it is in the middle of its bake.
 fn child_in_mid_bake(target: &Path) -> Child {
-    let mut child = Command::new(std::env::current_exe().unwrap())
+    let mut command = Command::new(std::env::current_exe().unwrap());
+    // It hears Ctrl-C even where these tests run in the background of a shell, which ignores it there.
+    let heard = || {
+        // SAFETY: no handler is named.
+        unsafe { libc::signal(libc::SIGINT, libc::SIG_DFL) };
+        Ok(())
+    };
+    // SAFETY: a call that may be made between fork and exec.
+    unsafe { std::os::unix::process::CommandExt::pre_exec(&mut command, heard) };
+    let mut child = command
         .args(["--ignored", "--exact", "--nocapture", "files::staging::child_that_bakes_for_ever"])
         .env("TYNDALL_TEST_BAKE", target)
         .stdout(Stdio::piped())
