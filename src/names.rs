@@ -10,8 +10,13 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     let word: String = word.chars().take(MOST_COMPARED).flat_map(char::to_lowercase).collect();
     let length = word.chars().count();
     let changes = |candidate: &str| {
+        // Each letter more or less is a change: most candidates are out without a comparison.
+        let other = candidate.chars().count();
+        if 3 * length.abs_diff(other) > length.max(other) {
+            return None;
+        }
         let changes = strsim::damerau_levenshtein(&word, &candidate.to_lowercase());
-        (3 * changes <= length.max(candidate.chars().count())).then_some(changes)
+        (3 * changes <= length.max(other)).then_some(changes)
     };
     let near = candidates.into_iter().filter_map(|candidate| Some((changes(candidate)?, candidate)));
     near.min_by_key(|(changes, _)| *changes).map(|(_, candidate)| candidate)

@@ -125,7 +125,7 @@ fn bad_values_are_refused_in_one_line() {
         ("/constituents/1/single_scattering_albedo", json!(1.01), "between 0 and 1"),
         ("/constituents/0/profile/scale_height_km", json!(0), "scale_height_km = 0"),
         ("/constituents/0/profile/kind", json!("exponental"), "nearest known one is `exponential`"),
-        ("/constituents/0/role", json!("vapour"), "all are `gas`, `aerosol`"),
+        ("/constituents/0/role", json!("vapour"), "known are `gas`, `aerosol`"),
         ("/constituents/0/scattering/per_km", json!(-0.1), "per_km = -0.1: must be 0 or more"),
         ("/name", json!("../escape"), "lower-case letters"),
         ("/constituents", json!({}), "constituents = {}: must be a list"),

@@ -11,8 +11,8 @@ use std::path::PathBuf;
 /// Spectra as CSV to XYZ, xy, linear RGB and CIELAB.
 ///
 /// XYZ = k Σ spectrum · (x̄, ȳ, z̄) · 1 nm over 360–830 nm with the CIE 1931 2° observer; the spectrum is linear
-/// between its samples, end values are held. One with samples between whole nanometres is integrated as it is given,
-/// so that no line falls between them. (ASTM E308 in its practice range stops at 780 nm: 2e-6 less X for a white.)
+/// between its samples, end values are held. One with samples less than a nanometre apart is integrated as it is given,
+/// so that no line falls between whole nanometres. (ASTM E308 in its practice range stops at 780 nm: 2e-6 less X for a white.)
 ///
 /// Views of `tyndall sample` and `tyndall reference` are radiance over the star's irradiance. They are taken under
 /// --illuminant, and Y = 100 is a white surface that this light meets squarely:

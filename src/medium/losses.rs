@@ -65,7 +65,6 @@ impl Medium {
 
     /// The altitude (m) above which a ray that grazes the air meets next to nothing; none where that holds everywhere.
     pub fn empty_above(&self) -> Option<f64> {
-        let all: Vec<usize> = (0..self.constituents.len()).collect();
         let height = self.height();
         let mut altitudes: Vec<f64> = (0..ALTITUDES)
             .map(|k| height * k as f64 / ALTITUDES as f64)
@@ -73,7 +72,12 @@ impl Medium {
             .collect();
         altitudes.sort_by(f64::total_cmp);
         let filled = altitudes.iter().rposition(|&z| {
-            (0..self.wavelengths_nm.len()).any(|w| self.chord(&all, w, z, height) >= EMPTY)
+            let paths: Vec<f64> =
+                self.constituents.iter().map(|c| self.path(&c.density, z, height)).collect();
+            let depth = |w: usize| -> f64 {
+                self.constituents.iter().zip(&paths).map(|(c, path)| c.extinction(w) * path).sum()
+            };
+            (0..self.wavelengths_nm.len()).any(|w| depth(w) >= EMPTY)
         })?;
         Some(altitudes.get(filled + 1).copied().unwrap_or(height))
     }
@@ -97,16 +101,22 @@ impl Medium {
     /// Optical depth at wavelength number `w` of some constituents along the level ray at an altitude, both ways, up to
     /// a ceiling, m.
     fn chord(&self, which: &[usize], w: usize, altitude: f64, ceiling: f64) -> f64 {
+        let depth = |c: &usize| {
+            let c = &self.constituents[*c];
+            c.extinction(w) * self.path(&c.density, altitude, ceiling)
+        };
+        which.iter().map(depth).sum()
+    }
+
+    /// Integral of a density along the level ray at an altitude, both ways, up to a ceiling, m.
+    fn path(&self, density: &DensityProfile, altitude: f64, ceiling: f64) -> f64 {
         let r = self.ground_radius + altitude;
         let length = ((ceiling - altitude).max(0.0) * (ceiling + altitude + 2.0 * self.ground_radius)).sqrt();
-        let extinction = |z: f64| -> f64 {
-            which.iter().map(|&c| &self.constituents[c]).map(|c| c.extinction(w) * c.density.at(z)).sum()
-        };
         // s = length · x²: short steps where the ray is level.
         let step = |k: usize| {
             let x = (k as f64 + 0.5) / STEPS as f64;
             let s = length * x * x;
-            extinction(altitude + s * s / ((r * r + s * s).sqrt() + r)) * 2.0 * x
+            density.at(altitude + s * s / ((r * r + s * s).sqrt() + r)) * 2.0 * x
         };
         2.0 * length / STEPS as f64 * (0..STEPS).map(step).sum::<f64>()
     }

@@ -5,13 +5,13 @@ use super::observer::OBSERVER_RANGE;
 
 /// The spectrum at every whole nanometre of the observer's range, end values held.
 ///
-/// Where all its nodes in the range are whole nanometres these are its values. Else something may lie between them, as
-/// a laser's line does, and each is the mean under a hat that falls to 0 one nanometre away on both sides: then Σ value ·
+/// Where its nodes in the range are a nanometre apart or more these are its values, as the CIE has it. Else something may
+/// lie between them, as a laser's line does, and each is the mean under a hat that falls to 0 one nanometre away on both sides: then Σ value ·
 /// x̄ · 1 nm is ∫ spectrum · x̄ with both linear between their nodes, to the last bit of the line.
 pub fn at_nanometres(spectrum: &Spectrum) -> Vec<f64> {
     let (from, to) = (OBSERVER_RANGE.0 as f64, OBSERVER_RANGE.1 as f64);
     let between: Vec<f64> = spectrum.nodes().map(|n| n.0).filter(|w| (from..to).contains(w)).collect();
-    if between.iter().all(|w| w.fract() == 0.0) {
+    if between.windows(2).all(|pair| pair[1] - pair[0] >= 1.0) {
         return (OBSERVER_RANGE.0..=OBSERVER_RANGE.1).map(|w| spectrum.at(w as f64)).collect();
     }
     means(spectrum, &between)
@@ -89,12 +89,14 @@ mod tests {
         assert!(at_nanometres(&constant).iter().all(|v| (v - 3.0).abs() < 1e-12));
     }
 
-    /// Nodes on whole nanometres are sampled to the bit, wherever the spectrum begins and ends.
+    /// Nodes a nanometre apart or more are sampled to the bit, wherever they lie and the spectrum begins and ends.
     #[test]
-    fn whole_nanometres_are_sampled() {
-        let s =
-            Spectrum::new(vec![300.5, 400.0, 401.0, 500.0, 900.5], vec![0.1, 0.7, 0.3, 5.0, 1.0]).unwrap();
-        let values = at_nanometres(&s);
-        assert!((360..=830).all(|w| values[w - 360].to_bits() == s.at(w as f64).to_bits()));
+    fn coarse_spectra_are_sampled() {
+        for at in [400.0, 408.571] {
+            let nodes = vec![300.5, at, at + 1.0, 500.0, 900.5];
+            let s = Spectrum::new(nodes, vec![0.1, 0.7, 0.3, 5.0, 1.0]).unwrap();
+            let values = at_nanometres(&s);
+            assert!((360..=830).all(|w| values[w - 360].to_bits() == s.at(w as f64).to_bits()));
+        }
     }
 }
