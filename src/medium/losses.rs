@@ -71,15 +71,18 @@ impl Medium {
             .chain(self.middles(0.0, height))
             .collect();
         altitudes.sort_by(f64::total_cmp);
-        let filled = altitudes.iter().rposition(|&z| {
-            let paths: Vec<f64> =
-                self.constituents.iter().map(|c| self.path(&c.density, z, height)).collect();
-            let depth = |w: usize| -> f64 {
-                self.constituents.iter().zip(&paths).map(|(c, path)| c.extinction(w) * path).sum()
-            };
-            (0..self.wavelengths_nm.len()).any(|w| depth(w) >= EMPTY)
-        })?;
+        let filled = altitudes.iter().rposition(|&z| self.is_filled(z))?;
         Some(altitudes.get(filled + 1).copied().unwrap_or(height))
+    }
+
+    /// Whether a ray that grazes the air at an altitude, m, meets more than next to nothing.
+    pub fn is_filled(&self, altitude: f64) -> bool {
+        let path = |c: &Constituent| self.path(&c.density, altitude, self.height());
+        let paths: Vec<f64> = self.constituents.iter().map(path).collect();
+        let depth = |w: usize| -> f64 {
+            self.constituents.iter().zip(&paths).map(|(c, path)| c.extinction(w) * path).sum()
+        };
+        (0..self.wavelengths_nm.len()).any(|w| depth(w) >= EMPTY)
     }
 
     /// Largest optical depth at wavelength number `w` of some constituents along a ray that grazes them between two

@@ -22,7 +22,10 @@ pub fn lost(medium: &Medium, top: &Raw, constituents: &[Raw]) -> Result<Vec<Stri
         out.push(told(&at, &medium.constituents[cut.constituent], &cut, stated));
     }
     let height = medium.height();
-    if let Some(above) = medium.empty_above().filter(|above| 1.0 - above / height > EMPTY) {
+    // One look where the limit is spares most planets the search for the altitude.
+    if !medium.is_filled((1.0 - EMPTY) * height)
+        && let Some(above) = medium.empty_above().filter(|above| 1.0 - above / height > EMPTY)
+    {
         let (share, km) = (digits(100.0 * (1.0 - above / height)), digits(above / 1e3));
         out.push(format!(
             "{at}: {share} % of the shell, all above {km} km, is empty, and tables spend texels of every axis on it; a top \
