@@ -8,7 +8,7 @@ use tyndall::points::Point;
 use tyndall::preset::{self, Planet};
 use tyndall::sky::{AerosolPhase, Component, Sky};
 use tyndall::table::Bruneton;
-use tyndall::transport::solve::{Resolution, Solution};
+use tyndall::transport::solve::{Orders, Resolution, Solution};
 use tyndall::transport::view::View;
 
 const FOLDER: &str = "in memory";
@@ -80,7 +80,9 @@ fn texel_centres_hold_the_solvers_light() {
 /// star's illuminance and a table's decoded value have one unit, so that both are the preset's in cd/m² and lx.
 #[test]
 fn parameters_and_tables_have_one_unit() {
-    let (planet, settings) = (planet(), Settings { wavelengths_nm: vec![450.0, 550.0, 650.0], ..settings() });
+    let wavelengths_nm = vec![450.0, 550.0, 650.0];
+    let settings = Settings { wavelengths_nm, orders: Orders::First(1), ..settings() };
+    let planet = planet();
     let product = bake(&planet, &settings, &mut |_| {}).unwrap();
     let file = &product.files.iter().find(|(name, _)| name == "three-atmosphere/parameters.json").unwrap().1;
     let parameters: serde_json::Value = serde_json::from_slice(file).unwrap();
@@ -103,7 +105,8 @@ fn grey_transmittance_is_that_of_beer_and_lambert() {
     let sets =
         ["constituents.air.density_factor=1e-6".to_string(), "constituents.aerosol.density_factor=20".into()];
     let planet = preset::load("earth-paper", &sets).unwrap();
-    let product = bake(&planet, &settings(), &mut |_| {}).unwrap();
+    let once = Settings { orders: Orders::First(1), ..settings() };
+    let product = bake(&planet, &once, &mut |_| {}).unwrap();
     let table = product.manifest.tables.iter().find(|t| t.name == "transmittance").unwrap();
     let bytes = &product.files.iter().find(|(name, _)| *name == table.file).unwrap().1;
     let atlas = from_exr_bytes(table.file.as_ref(), bytes).unwrap();
@@ -118,11 +121,8 @@ fn grey_transmittance_is_that_of_beer_and_lambert() {
 /// their light differs, and of one with itself it does not.
 #[test]
 fn diff_compares_views() {
-    let settings = Settings {
-        wavelengths_nm: vec![450.0, 550.0, 650.0],
-        orders: tyndall::transport::solve::Orders::First(1),
-        ..settings()
-    };
+    let settings =
+        Settings { wavelengths_nm: vec![450.0, 550.0, 650.0], orders: Orders::First(1), ..settings() };
     let dir = tempfile::tempdir().unwrap();
     let write = |name: &str, albedo: &str| {
         let planet = preset::load("earth-paper", &[format!("ground.albedo={albedo}")]).unwrap();

@@ -17,11 +17,12 @@ pub fn sheets(medium: &Medium, settings: &Settings) -> Vec<String> {
 }
 
 fn warning(medium: &Medium, sheet: &Sheet, layouts: &[(Layout, Vec<Elek2010>)]) -> Option<String> {
+    // Of a layout's tables, the coarsest.
     let spacing = |tables: &[Elek2010]| tables.iter().map(|t| step(t, sheet.altitudes)).fold(0.0, f64::max);
     let coarse: Vec<String> = layouts
         .iter()
         .map(|(layout, tables)| (layout.name(), spacing(tables)))
-        .filter(|(_, step)| FILLED * step > sheet.thickness())
+        .filter(|(_, step)| *step > sheet.thickness())
         .map(|(name, step)| format!("{step:.0} m (layout {name})"))
         .collect();
     if coarse.is_empty() {
@@ -31,15 +32,11 @@ fn warning(medium: &Medium, sheet: &Sheet, layouts: &[(Layout, Vec<Elek2010>)]) 
     let (name, thickness) = (&medium.constituents[sheet.constituent].name, digits(sheet.thickness()));
     Some(format!(
         "constituents.{name}.profile: its layer from {bottom} to {top} km (optical depth {}) is {thickness} m thick, and the \
-         altitudes of the tables lie up to {} apart there: near it they blur it; --altitudes and --size bring them closer",
+         altitudes of the tables lie {} apart there: near it they blur it; --altitudes and --size bring them closer",
         digits(sheet.depth),
         coarse.join(" and ")
     ))
 }
-
-/// Share of the way from one altitude to the next from which on a sheet is met by both: what is interpolated between them
-/// is then more sheet than not.
-const FILLED: f64 = 0.75;
 
 /// Three significant digits, written out.
 fn digits(v: f64) -> f64 {
@@ -62,16 +59,18 @@ fn mappings(medium: &Medium, settings: &Settings, layout: Layout) -> Vec<Elek201
     }
 }
 
-/// Largest distance of two neighbouring altitudes of a table between which some of a stretch (m) lies; 0 where the table
-/// holds none of it.
+/// Distance of the two altitudes of a table about the middle of what it holds of a stretch, m; 0 where it holds none.
 fn step(table: &Elek2010, [bottom, top]: [f64; 2]) -> f64 {
     let size = table.size()[0];
     let mut altitudes: Vec<f64> = (0..size).map(|i| table.altitude(i)).collect();
     if size == 1 {
         altitudes = table.altitudes().to_vec();
     }
-    let within = |pair: &&[f64]| pair[0] < top && pair[1] > bottom;
-    altitudes.windows(2).filter(within).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max)
+    let [lowest, highest] = table.altitudes();
+    let (low, high) = (bottom.max(lowest), top.min(highest));
+    let middle = 0.5 * (low + high);
+    let about = |pair: &&[f64]| (pair[0]..=pair[1]).contains(&middle);
+    if low < high { altitudes.windows(2).find(about).map_or(0.0, |pair| pair[1] - pair[0]) } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -37,7 +37,7 @@ impl Lights {
     }
 
     /// The light in a medium: that of a bake before, or solved now.
-    pub(super) fn of(&self, medium: &Medium, resolution: &Resolution, orders: Orders) -> Solved {
+    pub fn of(&self, medium: &Medium, resolution: &Resolution, orders: Orders) -> Solved {
         let resolution = &if self.coarse { coarse(resolution) } else { *resolution };
         // Numbers are written so that no two are alike.
         let made_of = format!("{medium:?} {resolution:?} {orders:?}");

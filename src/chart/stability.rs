@@ -5,6 +5,7 @@
 //! nadir, suns from overhead to 18° below the horizon and at the end of the tables' sun axis, towards the sun, across
 //! and away. Errors are told of lit views by day, where a number means something on every planet.
 
+use crate::bake::Lights;
 use crate::bake::compact::Sizes;
 use crate::bake::settings::{Layout, Settings, Solver};
 use crate::error::Result;
@@ -17,7 +18,7 @@ use crate::points::Point;
 use crate::preset::{self, Coefficient, Optics, PhaseLaw, Planet, Substance};
 use crate::quality::{Distribution, colour_error};
 use crate::spectrum::{ColourSpace, Reconstruction, Spectrum, grid, multiply};
-use crate::transport::solve::{Orders, Resolution, Solution, lowest_sun};
+use crate::transport::solve::{Orders, Resolution, lowest_sun};
 use crate::transport::view::View;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -72,11 +73,19 @@ fn grey(scattering: f64, absorption: f64) -> Optics {
 /// All cases. Errors: none but a shipped preset that cannot be read.
 pub fn cases() -> Result<Vec<Case>> {
     let mut out = Vec::new();
+    let dense = earth(|p| p.constituents.iter_mut().for_each(|c| c.density_factor *= 100.0))?;
+    let thick = [("100 times denser", dense), ("venus", preset::load("venus", &[])?)];
+    out.extend(thick.map(|(name, planet)| Case {
+        name,
+        planet,
+        settings: small(),
+        ours_alone: false,
+        heavy: true,
+    }));
     let mut planet = |name, planet: Result<Planet>| -> Result<()> {
         out.push(Case { name, planet: planet?, settings: small(), ours_alone: false, heavy: false });
         Ok(())
     };
-    planet("earth-paper", earth(|_| {}))?;
     planet("10 times denser", preset::load("earth-dense10", &[]))?;
     planet("mars", preset::load("mars", &[]))?;
     planet("no air", earth(|p| p.constituents.clear()))?;
@@ -92,25 +101,16 @@ pub fn cases() -> Result<Vec<Case>> {
     planet("visibility of 3 km", earth(|p| haze(p, |c| c.density_factor = 3.912 / (3000.0 * 2.1e-5))))?;
     planet("nothing absorbs, ground albedo 1", earth(lossless))?;
     planet("g = 0.99", earth(|p| haze(p, |c| c.phase = henyey_greenstein(0.99))))?;
+    // From here on one air, whose light is solved once.
+    planet("earth-paper", earth(|_| {}))?;
     planet("star a millionth as bright", earth(|p| p.star.irradiance = p.star.irradiance.scaled(1e-6)))?;
     planet("star a million times as bright", earth(|p| p.star.irradiance = p.star.irradiance.scaled(1e6)))?;
-    let dense = earth(|p| p.constituents.iter_mut().for_each(|c| c.density_factor *= 100.0))?;
-    let thick = [("100 times denser", dense), ("venus", preset::load("venus", &[])?)];
-    out.extend(thick.map(|(name, planet)| Case {
-        name,
-        planet,
-        settings: small(),
-        ours_alone: false,
-        heavy: true,
-    }));
     let mut setting = |name, change: &dyn Fn(&mut Settings)| -> Result<()> {
         let mut settings = small();
         change(&mut settings);
         out.push(Case { name, planet: earth(|_| {})?, settings, ours_alone: true, heavy: false });
         Ok(())
     };
-    setting("1 wavelength", &|s| s.wavelengths_nm = grid(1))?;
-    setting("81 wavelengths", &|s| s.wavelengths_nm = grid(81))?;
     let with = |axis: usize| {
         move |s: &mut Settings| {
             for size in [&mut s.elek2010_size, &mut s.compact.sizes.single, &mut s.compact.sizes.multiple] {
@@ -122,6 +122,8 @@ pub fn cases() -> Result<Vec<Case>> {
     setting("2 views", &with(1))?;
     setting("2 suns", &with(2))?;
     setting("2 azimuths", &with(3))?;
+    setting("1 wavelength", &|s| s.wavelengths_nm = grid(1))?;
+    setting("81 wavelengths", &|s| s.wavelengths_nm = grid(81))?;
     Ok(out)
 }
 
@@ -140,8 +142,15 @@ fn henyey_greenstein(g: f64) -> PhaseLaw {
     PhaseLaw::HenyeyGreenstein { g: Spectrum::constant(g) }
 }
 
+/// Light that cases share: of our tables, and of the truth.
+#[derive(Default)]
+pub struct Shared {
+    tables: Arc<Lights>,
+    truth: Lights,
+}
+
 /// One of each family, small.
-pub fn methods(settings: &Settings) -> Vec<Box<dyn Method>> {
+fn methods(settings: &Settings, lights: &Arc<Lights>) -> Vec<Box<dyn Method>> {
     let baked = |family, layout, settings: Settings, storage| -> Box<dyn Method> {
         Box::new(BakedTables {
             family,
@@ -149,7 +158,7 @@ pub fn methods(settings: &Settings) -> Vec<Box<dyn Method>> {
             layout,
             settings,
             storage,
-            lights: Arc::default(),
+            lights: lights.clone(),
         })
     };
     let literal = Settings {
@@ -192,11 +201,11 @@ const DAY: f64 = 0.17;
 const DARK: f64 = 1e-11;
 
 /// All methods on a case; `ours` leaves out the older ones, as does a case that is none to them.
-pub fn run(case: &Case, ours: bool) -> Vec<Outcome> {
+pub fn run(case: &Case, ours: bool, shared: &Shared) -> Vec<Outcome> {
     let ours = ours || case.ours_alone;
     let views = awkward_views(&case.planet);
-    let truth = truth(&case.planet, &views);
-    let methods = methods(&case.settings);
+    let truth = truth(&case.planet, &views, &shared.truth);
+    let methods = methods(&case.settings, &shared.tables);
     let chosen = methods.iter().filter(|m| !ours || m.family().is_ours());
     chosen.map(|m| outcome(m.as_ref(), &case.planet, &views, &truth)).collect()
 }
@@ -271,11 +280,11 @@ pub fn awkward_views(planet: &Planet) -> Vec<Point> {
 }
 
 /// Linear RGB over the star's illuminance.
-fn truth(planet: &Planet, views: &[Point]) -> Vec<[f64; 3]> {
+fn truth(planet: &Planet, views: &[Point], lights: &Lights) -> Vec<[f64; 3]> {
     let nm = grid(WAVELENGTHS);
     let medium = planet.medium(&nm);
     let tolerance = crate::bake::settings::TOLERANCE;
-    let solution = Solution::new(&medium, &Resolution::TABLES, Orders::Converged { tolerance });
+    let solution = lights.of(&medium, &Resolution::TABLES, Orders::Converged { tolerance }).light;
     let reconstruction = Reconstruction::new(&nm, &planet.star.irradiance);
     let illuminance = reconstruction.sum(|_| 1.0)[1];
     let last: Vec<usize> = (0..medium.constituents.len()).collect();

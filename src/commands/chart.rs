@@ -3,7 +3,7 @@
 use super::machine::with_threads;
 use super::text::{print, say, watched};
 use crate::chart::draw::pictures;
-use crate::chart::stability::{Case, cases, markdown, run as run_case};
+use crate::chart::stability::{Case, Shared, cases, markdown, run as run_case};
 use crate::chart::{
     Chart, Check, Cost, Effort, Measure, Quantity, Row, Statistic, checks_csv, exceptions, front, mark,
     measure, read_csv, rows, to_csv,
@@ -110,11 +110,11 @@ fn measured(args: &Args, planet: &Planet) -> Result<Chart> {
 }
 
 fn stability(args: &Args) -> Result<()> {
-    let cases = cases()?;
+    let (cases, shared) = (cases()?, Shared::default());
     let bar = bar(args);
     let run = |(n, case): (usize, &Case)| {
         told(args, &bar, case.name, n, cases.len());
-        (case.name, run_case(case, false))
+        (case.name, run_case(case, false, &shared))
     };
     let outcomes = with_threads(args.threads, || cases.iter().enumerate().map(run).collect::<Vec<_>>())?;
     bar.finish_and_clear();

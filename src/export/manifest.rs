@@ -289,13 +289,18 @@ impl Manifest {
     /// `File` if it is missing, malformed (with line and column), or of a newer version.
     pub fn read(bake: &Path) -> Result<Manifest> {
         let folder = if bake.ends_with(MANIFEST) { bake.parent().unwrap_or(bake) } else { bake };
-        let start = Instant::now();
-        for look in 0..LOOKS {
+        // Looks that found nothing to wait for, one after another.
+        let mut vain = 0;
+        for _ in 0..LOOKS {
+            let start = Instant::now();
             match read_now(bake) {
                 // Some bake takes the place of another in this moment.
-                Err(_) if in_between(folder) => std::thread::sleep(Duration::from_millis(10)),
+                Err(_) if in_between(folder) => {
+                    vain = 0;
+                    std::thread::sleep(Duration::from_millis(10));
+                }
                 // It may have done so since; what takes long to find out is another fault.
-                Err(_) if look < 2 && start.elapsed() < Duration::from_millis(50) => {}
+                Err(_) if vain < 2 && start.elapsed() < Duration::from_millis(50) => vain += 1,
                 found => return found,
             }
         }

@@ -2,8 +2,8 @@
 
 use super::{DensityProfile, Medium};
 
-/// Where the density of a constituent is at least half of a maximum that it has, and the air on either side is thinner by
-/// half as well.
+/// Where the density of a constituent is at least half of a maximum that it has, and it and all air on either side are
+/// thinner than a third of what is there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
     /// Number of the constituent.
@@ -18,6 +18,9 @@ pub struct Sheet {
 const ABSORBED: f64 = 0.1;
 /// Optical depth by scattering of the level ray inside a sheet from which on it is told of: it shines with as much light.
 const SCATTERED: f64 = 0.01;
+/// Extinction half a thickness beside a sheet over that in its middle, at most. Air that thins out evenly has 0.5, and
+/// tables hold it well, since it is straight in their logarithm; decks of clouds of several kinds, as on Venus, as much.
+const BESIDE: f64 = 1.0 / 3.0;
 /// Halvings of a stretch in which the density falls to half.
 const HALVINGS: usize = 50;
 
@@ -48,15 +51,15 @@ impl Medium {
         let scattered = most(&|w| c.scattering[w] * column / thickness * 2.0 * level);
         let depth = most(&|w| c.extinction(w) * column);
         let seen = scattered >= SCATTERED || depth >= ABSORBED;
-        let stands_out = || {
+        let falls = |of: &dyn Fn(f64) -> f64| {
+            let here = of(0.5 * (bottom + top));
             let beside = [bottom - 0.5 * thickness, top + 0.5 * thickness];
-            let peak = 0.5 * (bottom + top);
-            (0..self.wavelengths_nm.len()).any(|w| {
-                let here = self.extinction_at(w, peak);
-                let inside = 0.0..self.height();
-                let around = beside.map(|z| if inside.contains(&z) { self.extinction_at(w, z) } else { 0.0 });
-                here > 0.0 && around.iter().all(|a| *a < 0.5 * here)
-            })
+            let inside = 0.0..self.height();
+            here > 0.0 && beside.iter().all(|z| !inside.contains(z) || of(*z) < BESIDE * here)
+        };
+        let stands_out = || {
+            let any = |w| falls(&|z| self.extinction_at(w, z));
+            falls(&|z| c.density.at(z)) && (0..self.wavelengths_nm.len()).any(any)
         };
         let thin = thickness > 0.0 && thickness <= 0.5 * self.height();
         (thin && seen && stands_out()).then_some(Sheet { constituent, altitudes, depth })
@@ -88,7 +91,9 @@ fn half_maxima(density: &DensityProfile, height: f64) -> Vec<[f64; 2]> {
             fall(&value, at, below.copied(), 0.0),
             fall(&value, at, places[k + 1..].iter().copied(), height),
         ];
-        if out.last().is_none_or(|last| *last != found) {
+        // A small maximum beside a larger one is a part of that.
+        let highest = places.iter().filter(|z| (found[0]..=found[1]).contains(z)).all(|&z| value(z) <= peak);
+        if highest && out.last().is_none_or(|last| *last != found) {
             out.push(found);
         }
     }
@@ -147,11 +152,13 @@ mod tests {
         ];
         let table = of(DensityProfile::Linear { nodes });
         close(table, &[[1.5e3, 2.5e3], [9e3, 9.1e3 + 100.0 / 1.9]]);
+        let steps = vec![(1e3, 0.0), (2e3, 1.0), (3e3, 0.1), (4e3, 0.11), (5e3, 0.0)];
+        close(of(DensityProfile::Linear { nodes: steps }), &[[1.5e3, 2.0e3 + 500.0 / 0.9]]);
         let cut = of(DensityProfile::Layer { bottom: 59.9e3, top: 60.1e3 });
         close(cut, &[[59.9e3, 60e3]]);
     }
 
-    /// A sheet stands out of the air around it by a factor of 2 in extinction, and is seen.
+    /// A sheet stands out of the air around it in extinction, and is seen.
     #[test]
     fn only_what_stands_out_is_a_sheet() {
         let count = |factor: f64, absorbs: bool| {

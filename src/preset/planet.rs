@@ -74,16 +74,23 @@ pub struct Substance {
 impl Substance {
     /// The constituent at a list of wavelengths (nm).
     pub fn at(&self, wavelengths_nm: &[f64]) -> Constituent {
-        let coefficients: Vec<(f64, f64)> = wavelengths_nm.iter().map(|&w| self.optics.at(w)).collect();
+        let [scattering, absorption] = self.coefficients(wavelengths_nm);
         Constituent {
             name: self.name.clone(),
             role: self.role,
             density: self.profile.clone(),
-            scattering: coefficients.iter().map(|c| c.0 * self.density_factor).collect(),
-            absorption: coefficients.iter().map(|c| c.1 * self.density_factor).collect(),
+            scattering,
+            absorption,
             phase: wavelengths_nm.iter().map(|&w| self.phase.at(w)).collect(),
             similarity_g: wavelengths_nm.iter().map(|&w| self.phase.similarity_g(w)).collect(),
         }
+    }
+
+    /// Scattering and absorption where the profile is 1, 1/m, at a list of wavelengths (nm).
+    pub fn coefficients(&self, wavelengths_nm: &[f64]) -> [Vec<f64>; 2] {
+        let (scattering, absorption): (Vec<f64>, Vec<f64>) =
+            wavelengths_nm.iter().map(|&w| self.optics.at(w)).unzip();
+        [scattering, absorption].map(|part| part.iter().map(|v| v * self.density_factor).collect())
     }
 }
 

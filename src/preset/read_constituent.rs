@@ -52,9 +52,8 @@ pub fn constituent(raw: &Raw, height: f64) -> Result<(Substance, Vec<String>)> {
 /// Numbers can each be fine and their product be beyond all numbers.
 fn refuse_overflow(raw: &Raw, substance: &Substance, height: f64) -> Result<()> {
     let column = substance.profile.column(0.0, height);
-    let medium = substance.at(&fine_grid());
     let fits = |v: &f64| *v >= 0.0 && v.is_finite() && (v * column).is_finite();
-    if medium.scattering.iter().chain(&medium.absorption).all(fits) {
+    if substance.coefficients(&fine_grid()).iter().flatten().all(fits) {
         return Ok(());
     }
     Err(raw.refuse("its optical depth is beyond all numbers"))

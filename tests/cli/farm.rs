@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
-const OPTIONS: [&str; 4] = ["--layout", "compact", "--threads", "1"];
+const OPTIONS: [&str; 4] = ["--layout", "elek2010", "--threads", "1"];
 
 /// A folder with so many planets and their list, with a comment, a blank line and a shipped planet in it.
 fn planets(count: usize) -> (tempfile::TempDir, PathBuf, Vec<String>) {

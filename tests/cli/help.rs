@@ -5,7 +5,7 @@ use clap::Args;
 use std::fs;
 use tyndall::commands;
 
-const COMMANDS: [&str; 14] = [
+pub const COMMANDS: [&str; 14] = [
     "bake",
     "diff",
     "recolour",

@@ -2,23 +2,10 @@
 
 use super::run::*;
 
-const COMMANDS: [&str; 15] = [
-    "",
-    "bake",
-    "diff",
-    "recolour",
-    "sample",
-    "reference",
-    "verify",
-    "chart",
-    "plan",
-    "colour",
-    "presets",
-    "presets list",
-    "presets show",
-    "presets check",
-    "presets schema",
-];
+/// Every command, and the program itself.
+fn commands() -> impl Iterator<Item = &'static str> {
+    super::help::COMMANDS.into_iter().chain([""])
+}
 
 /// A help as a terminal of so many columns shows it.
 fn help(command: &str, columns: &str) -> String {
@@ -32,7 +19,7 @@ fn help(command: &str, columns: &str) -> String {
 /// leaves a stump: wherever a sentence goes on in the next line, the line is short.
 #[test]
 fn no_line_is_broken_twice() {
-    for command in COMMANDS {
+    for command in commands() {
         let text = help(command, "1000");
         let lines: Vec<&str> = text.lines().collect();
         for pair in lines.windows(2).filter(|pair| !pair.iter().any(|l| l.is_empty() || l.starts_with(' '))) {
@@ -46,7 +33,7 @@ fn no_line_is_broken_twice() {
 /// No line is longer than the terminal is wide, but for a word that cannot be broken.
 #[test]
 fn lines_fit_the_terminal() {
-    for command in COMMANDS {
+    for command in commands() {
         for line in help(command, "80").lines() {
             let fits = line.chars().count() <= 80 || line.split_whitespace().count() < 3;
             assert!(fits, "{command}: {line}");
@@ -58,7 +45,7 @@ fn lines_fit_the_terminal() {
 #[test]
 fn defaults_are_printed_as_they_are_accepted() {
     let mut lists = 0;
-    for command in COMMANDS {
+    for command in commands() {
         let text = help(command, "1000");
         for default in text.split("[default: ").skip(1).filter_map(|rest| rest.split(']').next()) {
             let words: Vec<&str> = default.split_whitespace().collect();

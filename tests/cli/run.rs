@@ -94,6 +94,17 @@ pub fn earth_to_damage() -> (tempfile::TempDir, PathBuf) {
     (dir, bake)
 }
 
+/// A preset of the air of `earth-paper` without its aerosol, whose light is soon solved: its file, in a folder.
+pub fn gas(folder: &Path) -> PathBuf {
+    let mut preset: Value =
+        serde_json::from_str(include_str!("../../presets/planets/earth-paper.json")).unwrap();
+    preset["name"] = "gas".into();
+    preset["constituents"].as_array_mut().unwrap().truncate(1);
+    let file = folder.join("gas.json");
+    fs::write(&file, preset.to_string()).unwrap();
+    file
+}
+
 /// Every file below a folder, by its path in it.
 pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();

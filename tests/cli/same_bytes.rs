@@ -9,12 +9,13 @@ fn bytes(more: &[&str]) -> BTreeMap<String, Vec<u8>> {
 }
 
 /// Every file of a bake with all that it can write and more wavelengths than one pass of the solver holds. What
-/// depends on the order of a sum, the number of workers or the width of vectors would show.
+/// depends on the order of a sum, the number of workers or the width of vectors would show. One instruction set is that
+/// of the first bake, made again.
 #[test]
 fn over_runs_threads_and_instruction_sets() {
     let one = bytes(&["--threads", "1"]);
     assert!(one.len() >= 14 && one.contains_key("spectral/scattering_gas.exr"), "{:?}", one.keys());
-    let mut others = vec![vec!["--threads", "2"], vec!["--threads", "1"], vec!["--threads", "5"]];
+    let mut others = vec![vec!["--threads", "5"]];
     for isa in ["baseline", "avx2", "avx512"] {
         let has = words(&format!("sample {} --points no-such-file --isa {isa}", earth().display()));
         match has.err.contains("this machine has") {

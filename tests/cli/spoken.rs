@@ -24,7 +24,19 @@ fn answers(folder: &Path) -> Vec<Command> {
         &["sample", bake, "--points", &points],
         &["sample", bake, "--points", &points, "--layout", "elek2010"],
         &["reference", "earth", "--points", &points, "--paths", "1", "--wavelengths", "550"],
-        &["reference", "earth", "--points", &points, "--paths", "1", "--stderr", "0.1%", "--per-order"],
+        &[
+            "reference",
+            "earth",
+            "--points",
+            &points,
+            "--paths",
+            "1",
+            "--wavelengths",
+            "550",
+            "--stderr",
+            "0.1%",
+            "--per-order",
+        ],
         &["colour", &narrow],
         &["colour", &narrow, "--json"],
         &["presets"],
@@ -40,7 +52,7 @@ fn answers(folder: &Path) -> Vec<Command> {
     lines
         .iter()
         .map(|words| of(words))
-        .chain([small_bake("earth", folder, &["--layout", "compact"])])
+        .chain([small_bake("earth", folder, &["--layout", "elek2010"])])
         .collect()
 }
 
@@ -102,7 +114,7 @@ fn errors_that_nobody_can_keep() {
     let dir = tempfile::tempdir().unwrap();
     let out = dir.path().to_str().unwrap();
     let mut bakes = command();
-    bakes.args(["bake", "earth", "mars", "--layout", "compact", "--out", out]).args(SMALL);
+    bakes.args(["bake", "earth", "mars", "--layout", "elek2010", "--out", out]).args(SMALL);
     for (command, code) in [
         (&mut bakes, 3),
         (&mut of(&["bake", "no-such-planet", "earth", "--check", "--out", out]), 2),

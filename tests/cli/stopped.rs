@@ -75,7 +75,7 @@ fn five_race_and_some_are_killed() {
     let folder = dir.path().join("earth");
     let bake = |k: usize| {
         let set = format!("ground.albedo=0.{k}");
-        small_bake("earth", dir.path(), &["--layout", "compact", "--threads", "1", "--set", &set])
+        small_bake("earth", dir.path(), &["--layout", "elek2010", "--threads", "1", "--set", &set])
     };
     let start = |k| bake(k).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut killed = 0;
@@ -84,7 +84,7 @@ fn five_race_and_some_are_killed() {
         for (k, mut racer) in racers.into_iter().enumerate() {
             // Other moments in every round, from the first files to the last rename.
             if k % 2 == 0 {
-                std::thread::sleep(Duration::from_millis(200 + 170 * round as u64 + 90 * k as u64));
+                std::thread::sleep(Duration::from_millis(100 + 80 * round as u64 + 50 * k as u64));
                 racer.kill().unwrap();
             }
             let done = ran(racer.wait_with_output().unwrap());

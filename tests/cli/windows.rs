@@ -54,7 +54,7 @@ fn walk() -> Vec<[f64; 4]> {
 fn a_window_is_finer_than_the_whole() {
     let dir = tempfile::tempdir().unwrap();
     let out = |name: &str| dir.path().join(name);
-    let layout = ["--layout", "compact", "--wavelengths", "440,500,560,620"];
+    let layout = ["--layout", "compact", "--wavelengths", "440,500,560,620", "--orders", "1"];
     let whole = bake("earth-paper", &out("whole"), &[&COARSE[..], &layout].concat());
     let window = ["--altitudes", "0..200m", "--suns", "20..50", "--views", "sky"];
     let part = bake("earth-paper", &out("part"), &[&COARSE[..], &layout, &window].concat());

@@ -1,6 +1,6 @@
 //! Our layouts: a number everywhere, never negative, and near the truth.
 
-use tyndall::chart::stability::{Case, Outcome, cases, run};
+use tyndall::chart::stability::{Case, Outcome, Shared, cases, run};
 use tyndall::methods::Family;
 
 /// Largest median and 95th percentile of the relative error of RGB by day, of tables a thirtieth as large as the
@@ -45,9 +45,9 @@ fn complaints(case: &Case, outcome: &Outcome) -> Vec<String> {
 }
 
 fn check(heavy: bool) {
-    let mut all = Vec::new();
+    let (mut all, shared) = (Vec::new(), Shared::default());
     for case in cases().unwrap().iter().filter(|c| c.heavy == heavy) {
-        let outcomes = run(case, true);
+        let outcomes = run(case, true, &shared);
         assert_eq!(outcomes.len(), 2, "both layouts");
         for o in &outcomes {
             println!(

@@ -13,7 +13,8 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-const SMALL: [&str; 9] = [
+/// The air is small and its light that of two orders, solved as much in bakes as in exact answers.
+const SMALL: [&str; 11] = [
     "--quiet",
     "--layout",
     "compact",
@@ -23,6 +24,8 @@ const SMALL: [&str; 9] = [
     "compact=4x8x8x3",
     "--size",
     "compact-single=4x8x8x2",
+    "--orders",
+    "2",
 ];
 
 /// A bake of `earth-paper` whose air is small and whose waters are `waters`.
@@ -74,8 +77,8 @@ fn tables_answer_what_the_solver_says() {
         for component in ["total", "scattering", "ground"] {
             let ask = ["--water", "tropical", "--depth", depth, "--component", component];
             let found = sample(&bake, &ask);
-            // Each exact answer solves the air anew; the parts are tried at one depth.
-            let exact = component == "total" || depth == "12";
+            // Each exact answer solves the air anew. The parts add up, below, so that one of them is enough.
+            let exact = depth == "12" && component != "scattering";
             let truth = if exact { sample(&bake, &[&ask[..], &["--exact"]].concat()) } else { found.clone() };
             assert_eq!(found.len(), truth.len());
             for (k, (f, t)) in found.iter().zip(&truth).enumerate() {
