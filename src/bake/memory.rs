@@ -8,6 +8,7 @@ use super::settings::{Layout, Settings};
 use crate::medium::Medium;
 use crate::preset::Planet;
 use crate::table::Bruneton;
+use crate::transport::extent::Extent;
 use crate::transport::solve::Resolution;
 
 /// What every bake takes, bytes: picture, report, look-up of colours.
@@ -21,6 +22,10 @@ const SPECTRAL: f64 = 14.0;
 /// Bytes of a number of the solver: single precision for the sixteen wavelengths of a batch.
 const LANES: f64 = 64.0;
 const BATCH: usize = 16;
+/// Bytes of a stop of a ray without its columns, of a sample without its weight, and of a bundle of samples likewise.
+const STOP: f64 = 56.0;
+const SAMPLE: f64 = 20.0;
+const BUNDLE: f64 = 440.0;
 /// Directions of its search that the solver keeps at most, two states each, and states at work beside them.
 const MOST_KEPT: f64 = 16.0;
 const AT_WORK: f64 = 7.0;
@@ -69,17 +74,19 @@ impl Solve {
         let depth = medium.vertical_optical_depth().into_iter().fold(0.0, f64::max);
         // Thin air needs three directions, one of an optical depth of ten all that are kept.
         let kept = (3.0 + 4.0 * depth.sqrt()).min(MOST_KEPT);
-        let rays = state_levels * 2.3 * resolution.zeniths as f64;
+        let rays = Extent::of(medium, resolution);
+        let degrees = resolution.degree as f64 + 1.0;
         let constituents = medium.constituents.len() as f64;
         let scatterers = medium.constituents.iter().filter(|c| c.scatters()).count();
-        let path = shells * (8.0 * constituents + 40.0);
         let sunlight = shells * resolution.sunlight_nodes as f64;
         Solve {
             working: state_levels * at_suns * (2.0 * kept + AT_WORK)
                 + field_levels * at_suns
-                + rays * field_levels * 1.3 * (LANES + 32.0),
+                + rays.stops * (LANES + SAMPLE)
+                + rays.bundles * BUNDLE
+                + rays.touched * degrees * LANES,
             solution: batches * (state_levels * at_suns + sunlight * LANES)
-                + rays * path
+                + rays.stops * (8.0 * constituents + STOP)
                 + sunlight * 8.0 * constituents,
             fields: field_levels * at_suns * scatterers as f64,
         }

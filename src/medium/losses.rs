@@ -40,8 +40,9 @@ impl Medium {
         let c = &self.constituents[constituent];
         let (height, end) = (self.height(), c.density.end());
         let (w, extinction) = strongest(c)?;
-        let whole = c.density.column(0.0, end);
-        let lost = if end > height { c.density.column(height, end) } else { 0.0 };
+        // Columns take long, and nothing is cut off a profile that ends below the top.
+        let over = end > height;
+        let [whole, lost] = [0.0, height].map(|from| if over { c.density.column(from, end) } else { 0.0 });
         let largest = largest(&c.density, height);
         let at_top = c.density.at(height * (1.0 - 1e-9)) / largest;
         let cut = Cut {
@@ -53,7 +54,8 @@ impl Medium {
             nm: self.wavelengths_nm[w],
         };
         let ceiling = end.min(height.max(0.0) + SCALES * c.density.scale());
-        let told = cut.depth >= CUT * (whole * extinction).min(1.0)
+        let told = over
+            && cut.depth >= CUT * (whole * extinction).min(1.0)
             && self.grazing(&[constituent], w, (height, ceiling)) >= SEEN;
         // A table that ends at the top says nothing of what is above it.
         let stops = matches!(c.density, DensityProfile::Linear { .. } | DensityProfile::LogLinear { .. })

@@ -34,7 +34,8 @@ pub fn constituent(raw: &Raw, height: f64) -> Result<(Substance, Vec<String>)> {
         return Err(name.refuse("must not be empty"));
     }
     let profile = profile(&raw.need("profile")?)?;
-    let optics = optics(raw, profile.column(0.0, height))?;
+    let column = profile.column(0.0, height);
+    let optics = optics(raw, column)?;
     let factor = raw.get("density_factor")?.map(|f| f.number_in(NOT_NEGATIVE));
     let substance = Substance {
         name: name.text()?.to_string(),
@@ -44,14 +45,13 @@ pub fn constituent(raw: &Raw, height: f64) -> Result<(Substance, Vec<String>)> {
         optics,
         profile,
     };
-    refuse_overflow(raw, &substance, height)?;
+    refuse_overflow(raw, &substance, column)?;
     let warnings = warnings(&substance, height);
     Ok((substance, warnings))
 }
 
 /// Numbers can each be fine and their product be beyond all numbers.
-fn refuse_overflow(raw: &Raw, substance: &Substance, height: f64) -> Result<()> {
-    let column = substance.profile.column(0.0, height);
+fn refuse_overflow(raw: &Raw, substance: &Substance, column: f64) -> Result<()> {
     let fits = |v: &f64| *v >= 0.0 && v.is_finite() && (v * column).is_finite();
     if substance.coefficients(&fine_grid()).iter().flatten().all(fits) {
         return Ok(());

@@ -19,6 +19,8 @@ use crate::lanes::Lanes;
 /// height is interpolated over steps of some thousandths of a cosine too, and rays are sampled every 0.013.
 const FIRST_TURN: f64 = 2e-3;
 const LONGEST_STEP: f64 = 1e-2;
+/// In tall shells, where rays turn far: a step may be this share of the turn before it.
+const SHARE_OF_TURN: f64 = 0.025;
 
 /// Samples of a ray as seen after one turn.
 pub struct Bundle {
@@ -53,7 +55,7 @@ pub fn turns() -> Vec<f64> {
     let mut turns = vec![0.0, FIRST_TURN];
     while turns[turns.len() - 1] < std::f64::consts::PI {
         let last = turns[turns.len() - 1];
-        turns.push(last + last.min(LONGEST_STEP));
+        turns.push(last + last.min(LONGEST_STEP.max(SHARE_OF_TURN * last)));
     }
     turns
 }
@@ -286,7 +288,8 @@ mod tests {
         let turns = turns();
         assert!(turns[0] == 0.0 && turns[turns.len() - 1] >= std::f64::consts::PI);
         for t in turns[1..].windows(2) {
-            assert!(t[1] > t[0] && t[1] <= 2.0 * t[0] && t[1] - t[0] <= LONGEST_STEP * 1.000_001);
+            let most = LONGEST_STEP.max(SHARE_OF_TURN * t[0]) * 1.000_001;
+            assert!(t[1] > t[0] && t[1] <= 2.0 * t[0] && t[1] - t[0] <= most);
         }
     }
 

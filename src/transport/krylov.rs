@@ -15,6 +15,8 @@ use rayon::prelude::*;
 
 /// Applications after which a solution that has not converged is left as it is; the residual tells.
 const MOST_APPLICATIONS: usize = 120;
+/// Relative change of the residual below which it stands still.
+const STILL: f64 = 0.01;
 /// Directions that are kept: each costs two states.
 const MOST_KEPT: usize = 16;
 /// Applications after which the residual is no longer trusted to its recurrence in single precision.
@@ -36,7 +38,7 @@ pub fn converge(operator: &Operator, first: State, tolerance: f64) -> (State, Re
     let mut kept: Vec<Direction> = Vec::new();
     let mut best = (f64::INFINITY, x.clone());
     let mut weights = Weights::new(&x);
-    let mut applications = 1;
+    let (mut applications, mut before) = (1, f64::INFINITY);
     loop {
         let mut residual = largest_change(&rest, &x, operator.optics.count);
         if worst(&residual) < tolerance && !kept.is_empty() && applications > TRUSTED {
@@ -48,11 +50,16 @@ pub fn converge(operator: &Operator, first: State, tolerance: f64) -> (State, Re
         }
         let largest = worst(&residual);
         let mut p = rest.clone();
-        preconditioner.solve(&mut p);
         if largest < tolerance {
+            preconditioner.solve(&mut p);
             x.add(&p);
             return (x, Report { applications, residual });
         }
+        // Where the preconditioner leads to what was left already, the next step goes without it.
+        if (largest / before - 1.0).abs() > STILL {
+            preconditioner.solve(&mut p);
+        }
+        before = largest;
         if largest < best.0 {
             best = (largest, x.clone());
         }

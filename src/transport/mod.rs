@@ -12,6 +12,7 @@ mod bundles;
 mod column;
 
 pub mod exact;
+pub mod extent;
 pub mod fill;
 mod forward;
 #[cfg(test)]

@@ -56,11 +56,12 @@ fn part_of(file: &str) -> String {
     if own { folder.into() } else { SHARED.into() }
 }
 
-/// `bake.json` without what says who made it, and without the hashes of other files, which have their own here.
+/// `bake.json` without what says who made it, without the hashes of other files, which have their own here, and without
+/// warnings: the same in other words makes no bake stale.
 fn of_manifest(bytes: &[u8]) -> Vec<u8> {
     fn bare(value: &mut Value) {
         if let Value::Object(map) = value {
-            map.retain(|key, _| !["blake3", "manifest_blake3", "tool"].contains(&key.as_str()));
+            map.retain(|key, _| !["blake3", "manifest_blake3", "tool", "warnings"].contains(&key.as_str()));
             map.values_mut().for_each(bare);
         } else if let Value::Array(list) = value {
             list.iter_mut().for_each(bare);
