@@ -5,11 +5,11 @@
 
 use super::compact::groups;
 use super::settings::{Layout, Settings};
-use crate::medium::Medium;
+use crate::medium::{Constituent, Medium};
 use crate::preset::Planet;
 use crate::table::Bruneton;
 use crate::transport::extent::Extent;
-use crate::transport::solve::Resolution;
+use crate::transport::solve::{Orders, Resolution, needed_degrees};
 
 /// What every bake takes, bytes: picture, report, look-up of colours.
 const BASE: f64 = 20e6;
@@ -39,9 +39,12 @@ pub fn estimate(planet: &Planet, settings: &Settings) -> u64 {
     let wants = |layout| settings.layouts.contains(&layout);
     let full = wants(Layout::Compact) || wants(Layout::ThreeAtmosphere);
     let paper = wants(Layout::Elek2010);
-    let solve = |resolution, wanted| if wanted { Solve::of(&medium, resolution) } else { Solve::default() };
-    let full_light = solve(&Resolution::TABLES, full);
-    let similar = solve(&Resolution::PAPER, paper || !full);
+    let solve = |medium: &Medium, resolution, wanted| match wanted {
+        true => Solve::of(medium, resolution, settings.orders),
+        false => Solve::default(),
+    };
+    let full_light = solve(&medium, &Resolution::TABLES, full);
+    let similar = solve(&medium.similarity(), &Resolution::PAPER, paper || !full);
     let texels = texels(&medium, settings);
     let texel = TEXEL + CONTAINER * settings.storage.containers.len() as f64;
     let solving = full_light.working.max(similar.working);
@@ -62,20 +65,19 @@ struct Solve {
 }
 
 impl Solve {
-    fn of(medium: &Medium, resolution: &Resolution) -> Self {
+    fn of(medium: &Medium, resolution: &Resolution, orders: Orders) -> Self {
         let levels = resolution.levels_in(medium);
         let (state_levels, field_levels) = (levels.coarse as f64, (levels.coarse * levels.refinement) as f64);
-        let terms = ((resolution.degree + 1) * (resolution.degree + 2) / 2) as f64;
+        let degrees = needed_degrees(medium, resolution.degree, orders);
+        let terms = degrees.iter().map(|l| l + 1).sum::<usize>() as f64;
         let at_suns = resolution.sun_nodes as f64 * terms * LANES;
         // Where profiles have more kinks than that, a shell ends at each.
         let kinks: usize = medium.constituents.iter().map(|c| c.density.kinks().len()).sum();
         let shells = (field_levels * levels.cuts as f64).max(kinks as f64);
         let batches = medium.wavelengths_nm.len().div_ceil(BATCH) as f64;
-        let depth = medium.vertical_optical_depth().into_iter().fold(0.0, f64::max);
-        // Thin air needs three directions, one of an optical depth of ten all that are kept.
-        let kept = (3.0 + 4.0 * depth.sqrt()).min(MOST_KEPT);
+        // Thin air needs three directions, loss-free air of an optical depth of seven all that are kept.
+        let kept = (3.0 + 5.0 * reach(medium)).min(MOST_KEPT);
         let rays = Extent::of(medium, resolution);
-        let degrees = resolution.degree as f64 + 1.0;
         let constituents = medium.constituents.len() as f64;
         let scatterers = medium.constituents.iter().filter(|c| c.scatters()).count();
         let sunlight = shells * resolution.sunlight_nodes as f64;
@@ -84,13 +86,28 @@ impl Solve {
                 + field_levels * at_suns
                 + rays.stops * (LANES + SAMPLE)
                 + rays.bundles * BUNDLE
-                + rays.touched * degrees * LANES,
+                + rays.touched * degrees.len() as f64 * LANES,
             solution: batches * (state_levels * at_suns + sunlight * LANES)
                 + rays.stops * (8.0 * constituents + STOP)
                 + sunlight * 8.0 * constituents,
             fields: field_levels * at_suns * scatterers as f64,
         }
     }
+}
+
+/// How often light is scattered before it leaves or is lost, to the power of one half: by air of optical depth τ about τ
+/// times, where a share ω of what is met is scattered 1 / (1 − ω) times at most. The largest of all wavelengths.
+fn reach(medium: &Medium) -> f64 {
+    let columns: Vec<f64> =
+        medium.constituents.iter().map(|c| c.density.column(0.0, medium.height())).collect();
+    let at = |w: usize| {
+        let sum = |of: &dyn Fn(&Constituent) -> f64| -> f64 {
+            medium.constituents.iter().zip(&columns).map(|(c, column)| column * of(c)).sum()
+        };
+        let (depth, absorbed) = (sum(&|c| c.extinction(w)), sum(&|c| c.absorption[w]));
+        if absorbed > 0.0 { depth.min(depth / absorbed) } else { depth }
+    };
+    (0..medium.wavelengths_nm.len()).map(at).fold(0.0, f64::max).sqrt()
 }
 
 /// Numbers of texels, and of texels times wavelengths.

@@ -193,7 +193,7 @@ fn least_extinction(medium: &Medium, largest: usize, orders: Orders) -> Vec<f64>
 
 /// Degrees at which any scatterer's phase function has something, up to `largest`; always degree 0. What counts as
 /// unscattered is missing at every degree.
-fn needed_degrees(medium: &Medium, largest: usize, orders: Orders) -> Vec<usize> {
+pub fn needed_degrees(medium: &Medium, largest: usize, orders: Orders) -> Vec<usize> {
     let largest = largest.min(MOST_DEGREE);
     let mut needed = vec![false; largest + 1];
     needed[0] = true;
