@@ -134,18 +134,18 @@ fn manifest_and_report() {
 fn options() {
     let dir = tempfile::tempdir().unwrap();
     let size = ["--size", "water=12x16x12"];
-    let all =
-        bake(&dir.path().join("a"), "sandy", &[&size[..], &["--threads", "1", "--underwater"]].concat());
-    let again =
-        bake(&dir.path().join("b"), "sandy", &[&size[..], &["--threads", "3", "--underwater"]].concat());
-    for entry in fs::read_dir(all.join("water")).unwrap() {
+    let with =
+        |folder: &str, more: &[&str]| bake(&dir.path().join(folder), "sandy", &[&size[..], more].concat());
+    let all = with("a", &["--underwater"]);
+    let [once, again] = ["1", "3"]
+        .map(|threads| with(threads, &["--water-orders", "1", "--underwater", "--threads", threads]));
+    for entry in fs::read_dir(once.join("water")).unwrap() {
         let file = entry.unwrap().file_name();
         let read = |bake: &Path| fs::read(bake.join("water").join(&file)).unwrap();
-        assert!(read(&all) == read(&again), "{file:?}");
+        assert!(read(&once) == read(&again), "{file:?}");
     }
     let ask = ["--water", "sandy", "--depth", "6", "--component", "scattering"];
-    let once = bake(&dir.path().join("c"), "sandy", &[&size[..], &["--water-orders", "1"]].concat());
-    let more = bake(&dir.path().join("d"), "sandy", &[&size[..], &["--water-orders", "3"]].concat());
+    let more = with("d", &["--water-orders", "3"]);
     let [whole, single, three] = [&all, &once, &more].map(|bake| sample(bake, &ask));
     let rises = |k: usize| single[k] > 0.0 && single[k] < three[k] && three[k] < whole[k];
     assert!((0..4).all(rises), "{single:?} {three:?} {whole:?}");
