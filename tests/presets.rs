@@ -115,6 +115,7 @@ fn bad_values_are_refused_in_one_line() {
     assert!(phase(json!("wide")).contains("no shipped spectrum"));
     let cases = [
         ("/ground/radius_km", json!(0), "ground.radius_km = 0: must be greater than 0"),
+        ("/ground/radius_km", json!(true), "ground.radius_km = true: must be a finite number"),
         ("/ground/radius_km", json!("6371"), "ground.radius_km = \"6371\": must be a finite number"),
         ("/top/height_m", json!(-1), "top.height_m = -1"),
         ("/ground/albedo/values/1", json!(1.5), "ground.albedo.values[1] = 1.5: must be between 0 and 1"),
