@@ -51,11 +51,12 @@ impl Degrees {
 }
 
 /// The fixed turns, up to half a circle.
-pub fn turns() -> Vec<f64> {
+pub fn turns(is_tall: bool) -> Vec<f64> {
+    let share = if is_tall { SHARE_OF_TURN } else { 0.0 };
     let mut turns = vec![0.0, FIRST_TURN];
     while turns[turns.len() - 1] < std::f64::consts::PI {
         let last = turns[turns.len() - 1];
-        turns.push(last + last.min(LONGEST_STEP.max(SHARE_OF_TURN * last)));
+        turns.push(last + last.min(LONGEST_STEP.max(share * last)));
     }
     turns
 }
@@ -285,11 +286,13 @@ mod tests {
     /// Turns rise from none past half a circle, by steps that at most double and stay short.
     #[test]
     fn turns_rise_by_short_steps() {
-        let turns = turns();
-        assert!(turns[0] == 0.0 && turns[turns.len() - 1] >= std::f64::consts::PI);
-        for t in turns[1..].windows(2) {
-            let most = LONGEST_STEP.max(SHARE_OF_TURN * t[0]) * 1.000_001;
-            assert!(t[1] > t[0] && t[1] <= 2.0 * t[0] && t[1] - t[0] <= most);
+        for (is_tall, share) in [(false, 0.0), (true, SHARE_OF_TURN)] {
+            let turns = turns(is_tall);
+            assert!(turns[0] == 0.0 && turns[turns.len() - 1] >= std::f64::consts::PI);
+            for t in turns[1..].windows(2) {
+                let most = LONGEST_STEP.max(share * t[0]) * 1.000_001;
+                assert!(t[1] > t[0] && t[1] <= 2.0 * t[0] && t[1] - t[0] <= most);
+            }
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::bundles::turns;
 use super::levels::Levels;
+use super::operator::is_tall;
 use super::path::LONGEST_ARC;
 use super::quadrature::{Direction, directions};
 use super::solve::Resolution;
@@ -30,7 +31,7 @@ impl Extent {
     /// Of the rays from all levels of the state, with so many zenith directions above the horizontal.
     fn new(levels: &Levels, zeniths: usize) -> Self {
         let (ground, top) = (levels.fine[0], levels.fine[levels.fine.len() - 1]);
-        let turns = if levels.is_refined() { turns() } else { Vec::new() };
+        let turns = if levels.is_refined() { turns(is_tall(ground, top)) } else { Vec::new() };
         let mut sum = Extent::default();
         for &r in &levels.coarse {
             for d in directions(r, ground, top, zeniths) {

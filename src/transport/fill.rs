@@ -318,7 +318,7 @@ impl Thick {
         };
         Thick {
             degrees: Degrees::new(basis),
-            turns: bundles::turns(),
+            turns: bundles::turns(solution.geometry.is_tall()),
             sources: groups.iter().map(sources).collect(),
         }
     }

@@ -21,6 +21,14 @@ use std::ops::Range;
 /// Intervals of the refined sun axis for each of the state's.
 const REFINEMENT: usize = 3;
 
+/// Whether a shell from a radius to another is so tall that its rays turn far around the planet.
+pub fn is_tall(ground: f64, top: f64) -> bool {
+    top > TALL * ground
+}
+
+/// Radius of the top over that of the ground from which on a shell is tall.
+const TALL: f64 = 2.0;
+
 /// The directions at one coarse level, with their paths.
 pub struct Gather {
     pub directions: Vec<(Direction, Path)>,
@@ -50,6 +58,11 @@ impl Geometry {
             })
             .collect();
         Geometry { levels, shells, refined: RefinedAxis::new(&axis, REFINEMENT, terms), axis, gathers }
+    }
+
+    /// Whether the shell is so tall that its rays turn far around the planet.
+    pub fn is_tall(&self) -> bool {
+        is_tall(self.shells.edges[0], self.shells.edges[self.shells.len()])
     }
 }
 
@@ -113,7 +126,7 @@ impl<'a> Operator<'a> {
             .map(|n| source_factors(self.basis, self.optics, &self.shares, &self.scatterers, n))
             .map(|all| zeroth.iter().map(|&t| all[t]).collect())
             .collect();
-        let turns = bundles::turns();
+        let turns = bundles::turns(self.geometry.is_tall());
         let level = |(gather, rays): (&Gather, &Vec<Ray>)| {
             let one = |((d, _), ray): (&(Direction, Path), &Ray)| {
                 let part = Part { weights: &ray.weights, sources: &sources };

@@ -158,13 +158,9 @@ impl Preconditioner {
 /// the column would take light of the day side for its own by night. There degree 2 does best: thick, nearly loss-free
 /// air as tall as 3.6 radii converges with 56 applications of the operator, with degree 0 not at all.
 fn turned(operator: &Operator) -> impl Fn(f32) -> f32 + use<> {
-    let edges = &operator.geometry.shells.edges;
-    let is_tall = edges[edges.len() - 1] > TALL * edges[0];
+    let is_tall = operator.geometry.is_tall();
     move |cos| if is_tall { 1.5 * cos * cos - 0.5 } else { 1.0 }
 }
-
-/// Radius of the top over that of the ground from which on a shell is tall.
-const TALL: f64 = 2.0;
 
 fn subtract(from: &mut [Lanes], row: &[Lanes], factor: f32) {
     for (out, value) in from.iter_mut().zip(row) {
