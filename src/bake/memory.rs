@@ -29,8 +29,7 @@ const BUNDLE: f64 = 440.0;
 /// Directions of its search that the solver keeps at most, two states each, and states at work beside them.
 const MOST_KEPT: f64 = 16.0;
 const AT_WORK: f64 = 7.0;
-/// For what is not counted. With it, the estimate was 0.95 to 1.35 times what 11 bakes took: shipped planets thin and
-/// thick, more wavelengths, larger tables, spectral files, waters.
+/// For what is not counted. `scripts/study-memory` holds the estimate against what bakes take.
 const MARGIN: f64 = 1.1;
 
 /// Estimate of the most memory that a bake takes, bytes.

@@ -11,7 +11,6 @@ use crate::medium::Medium;
 /// Sums over all rays of a solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Extent {
-    pub rays: f64,
     /// Points at which rays are cut.
     pub stops: f64,
     /// Bundles of thick air, 0 in thin; and the state's levels that these touch.
@@ -60,7 +59,6 @@ impl Extent {
             (false, true) => angle(r) + angle(top),
             (false, false) => angle(top) - angle(r),
         };
-        self.rays += 1.0;
         // Most arcs between two shells are short.
         let shells = crossed(&levels.fine);
         self.stops += 1.0 + shells + (turn / LONGEST_ARC - 0.25 * shells).max(0.0);
@@ -93,7 +91,7 @@ mod tests {
         (stops as f64, Extent::new(&levels, 10).stops)
     }
 
-    /// Within a few per cent of what paths are cut into, in a low shell and in one of two radii.
+    /// Within a tenth of what paths are cut into, in a low shell and in one of two radii.
     #[test]
     fn stops_are_foreseen() {
         for set in [vec![], vec!["ground.radius_km=32".to_string()]] {
