@@ -150,5 +150,5 @@ targets! {
     package: 40,
     folder: 60,
     recolour: 4,
-    any_bake: 300,
+    any_bake: 100,
 }

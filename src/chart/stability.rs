@@ -33,6 +33,20 @@ pub struct Case {
     pub ours_alone: bool,
     /// Takes long.
     pub heavy: bool,
+    /// Of the truth: one batch, unless the case is to be quick.
+    wavelengths: usize,
+}
+
+impl Case {
+    /// Few wavelengths, the same for the tables as for the truth, so that the planet's light is solved once. Errors are
+    /// then those of the tables alone. Cases of settings stay as they are.
+    pub fn quick(mut self) -> Self {
+        if !self.ours_alone {
+            self.wavelengths = 8;
+            self.settings.wavelengths_nm = grid(self.wavelengths);
+        }
+        self
+    }
 }
 
 /// Sizes for quick runs: the coarsest that are meant to be used.
@@ -44,7 +58,6 @@ fn small() -> Settings {
     }
 }
 
-/// Wavelengths of the truth: one batch.
 const WAVELENGTHS: usize = 16;
 
 fn earth(change: impl FnOnce(&mut Planet)) -> Result<Planet> {
@@ -81,9 +94,17 @@ pub fn cases() -> Result<Vec<Case>> {
         settings: small(),
         ours_alone: false,
         heavy: true,
+        wavelengths: WAVELENGTHS,
     }));
     let mut planet = |name, planet: Result<Planet>| -> Result<()> {
-        out.push(Case { name, planet: planet?, settings: small(), ours_alone: false, heavy: false });
+        out.push(Case {
+            name,
+            planet: planet?,
+            settings: small(),
+            ours_alone: false,
+            heavy: false,
+            wavelengths: WAVELENGTHS,
+        });
         Ok(())
     };
     planet("10 times denser", preset::load("earth-dense10", &[]))?;
@@ -108,7 +129,8 @@ pub fn cases() -> Result<Vec<Case>> {
     let mut setting = |name, change: &dyn Fn(&mut Settings)| -> Result<()> {
         let mut settings = small();
         change(&mut settings);
-        out.push(Case { name, planet: earth(|_| {})?, settings, ours_alone: true, heavy: false });
+        let planet = earth(|_| {})?;
+        out.push(Case { name, planet, settings, ours_alone: true, heavy: false, wavelengths: WAVELENGTHS });
         Ok(())
     };
     let with = |axis: usize| {
@@ -142,12 +164,8 @@ fn henyey_greenstein(g: f64) -> PhaseLaw {
     PhaseLaw::HenyeyGreenstein { g: Spectrum::constant(g) }
 }
 
-/// Light that cases share: of our tables, and of the truth.
-#[derive(Default)]
-pub struct Shared {
-    tables: Arc<Lights>,
-    truth: Lights,
-}
+/// Light that cases share, of our tables and of the truth.
+pub type Shared = Arc<Lights>;
 
 /// One of each family, small.
 fn methods(settings: &Settings, lights: &Arc<Lights>) -> Vec<Box<dyn Method>> {
@@ -204,8 +222,8 @@ const DARK: f64 = 1e-11;
 pub fn run(case: &Case, ours: bool, shared: &Shared) -> Vec<Outcome> {
     let ours = ours || case.ours_alone;
     let views = awkward_views(&case.planet);
-    let truth = truth(&case.planet, &views, &shared.truth);
-    let methods = methods(&case.settings, &shared.tables);
+    let truth = truth(case, &views, shared);
+    let methods = methods(&case.settings, shared);
     let chosen = methods.iter().filter(|m| !ours || m.family().is_ours());
     chosen.map(|m| outcome(m.as_ref(), &case.planet, &views, &truth)).collect()
 }
@@ -280,8 +298,8 @@ pub fn awkward_views(planet: &Planet) -> Vec<Point> {
 }
 
 /// Linear RGB over the star's illuminance.
-fn truth(planet: &Planet, views: &[Point], lights: &Lights) -> Vec<[f64; 3]> {
-    let nm = grid(WAVELENGTHS);
+fn truth(case: &Case, views: &[Point], lights: &Lights) -> Vec<[f64; 3]> {
+    let (planet, nm) = (&case.planet, grid(case.wavelengths));
     let medium = planet.medium(&nm);
     let tolerance = crate::bake::settings::TOLERANCE;
     let solution = lights.of(&medium, &Resolution::TABLES, Orders::Converged { tolerance }).light;

@@ -119,6 +119,18 @@ fn tiny_planets_are_finite_and_not_negative() {
     ]);
 }
 
+/// Air that reaches up four radii of the planet, thick and without loss. Within a free path the sun's height changes
+/// much there: a coarse operator that knows it needs 52 applications of the fine one, one that does not 71.
+#[test]
+fn tall_air_is_finite_and_soon_solved() {
+    let phase = PhaseFunction::CornetteShanks { g: 0.0 };
+    let deep = constituent(Role::Gas, phase, exponential(600e3), &[2.5e-5; 2], &[0.0; 2]);
+    let medium = planet(654e3, 2_335e3, 0.0, vec![deep]);
+    check(vec![("tall", medium.clone())]);
+    let applications = Solution::new(&medium, &COARSE, CONVERGED).report.applications;
+    assert!(applications < 60, "{applications} applications");
+}
+
 /// A planet of ten Jupiters, where twilight lasts a tenth of a degree of the sun:
 /// shorter than the sun axis resolves, so what undershoots there is set to 0.
 #[test]
