@@ -7,10 +7,8 @@
 //! Lambertian ground, one star; plane-parallel water under a flat surface. Out of scope: polarisation,
 //! refraction in air, waves, horizontal variation, clouds with edges, thermal emission.
 //!
-//! Who may know whom: `spectrum`, `medium` and `table` know nobody above them; `transport` knows no preset,
-//! file or colour; `reference` shares the medium with `transport` and no line of its integration; `bake`
-//! joins them; `export` sees finished tables only; `methods` are other ways to a sky (and our own through `bake`), of
-//! which `chart` knows no more than their trait; `commands` sees all.
+//! Each folder is a room. A room knows only rooms below it; `tests/architecture.rs` lists which, and fails on any other
+//! `use`.
 //!
 //! Conventions. SI units and f64 outside the transport loops, nanometres for wavelengths only. `mu`, `mu_s`
 //! and `nu` are cosines of the view zenith, sun zenith and view–sun angles; directions point away from the
@@ -19,28 +17,24 @@
 //! scattering coefficient by 4π (Eqs. 7, 12) are absent; the factor 1/π of a Lambertian ground, absent from
 //! their Eq. 8, is present. Radiances are per unit solar irradiance on a plane normal to the beam (1/sr).
 
+pub mod algorithm1;
 pub mod bake;
 pub mod chart;
-pub mod clock;
 pub mod commands;
 pub mod error;
-pub mod export;
-pub mod input;
-pub mod isa;
-pub mod lanes;
+pub mod files;
+pub mod geometry;
+pub mod machine;
+pub mod mapping;
+pub mod math;
 pub mod medium;
-pub mod memory;
 pub mod methods;
-pub mod names;
-pub mod output;
 pub mod plan;
-pub mod points;
 pub mod preset;
 pub mod quality;
 pub mod reference;
 pub mod sky;
 pub mod spectrum;
-pub mod table;
 pub mod transport;
 
 pub use error::{Error, Line, Result};

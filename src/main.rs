@@ -3,11 +3,11 @@
 use clap::Parser;
 use tyndall::commands::share_threads;
 use tyndall::commands::{bake, chart, colour, diff, plan, presets, recolour, reference, sample, verify};
-use tyndall::export::interrupt::handle_interrupts;
-use tyndall::output;
+use tyndall::files::interrupt::handle_interrupts;
+use tyndall::machine::output;
 
 #[global_allocator]
-static MEMORY: tyndall::memory::Allocator = tyndall::memory::Allocator;
+static MEMORY: tyndall::machine::memory::Allocator = tyndall::machine::memory::Allocator;
 
 /// Offline baker of lookup tables for planetary atmospheres
 #[derive(Parser)]

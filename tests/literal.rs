@@ -7,10 +7,10 @@ mod direct;
 use constituents::{RAYLEIGH, constituent, exponential};
 use direct::Planet;
 use std::f64::consts::PI;
-use tyndall::isa::Isa;
-use tyndall::lanes::Lanes;
+use tyndall::algorithm1::{Gather, Literal, Settings, bake, work};
+use tyndall::machine::isa::Isa;
+use tyndall::machine::lanes::Lanes;
 use tyndall::medium::{Medium, PhaseFunction, Role};
-use tyndall::methods::literal::{Gather, Literal, Settings, bake, work};
 
 /// A small world with a thick shell at two wavelengths: vertical optical depths 0.45 and 0.23.
 fn small_world() -> Medium {

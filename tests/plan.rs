@@ -5,14 +5,14 @@ use std::path::Path;
 use std::sync::OnceLock;
 use tyndall::bake::bake;
 use tyndall::bake::settings::Settings;
+use tyndall::geometry::view::View;
+use tyndall::mapping::Views;
 use tyndall::plan::{Effort, Plan, plan};
 use tyndall::preset::{self, Budget, Metric, Planet, Scene, Tolerance};
 use tyndall::quality::{Scope, colour_error};
 use tyndall::sky::{Component, Sky};
 use tyndall::spectrum::{ColourSpace, Reconstruction, multiply};
-use tyndall::table::Views;
 use tyndall::transport::solve::{Orders, Resolution, Solution};
-use tyndall::transport::view::View;
 
 /// A tenth of Earth's radius under ten times its aerosol, which scatters evenly: another curvature, another mixture.
 fn planet() -> Planet {

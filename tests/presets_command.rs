@@ -80,10 +80,10 @@ fn slips_are_named() {
 /// in x and y and 2 % in luminance; without air there is no light and no colour.
 #[test]
 fn show_tells_the_colour_of_the_zenith() {
-    use tyndall::points::Point;
+    use tyndall::geometry::Point;
+    use tyndall::geometry::view::View;
     use tyndall::spectrum::{chromaticity, grid, hat_weights, weighted};
     use tyndall::transport::solve::{Orders, Resolution, Solution};
-    use tyndall::transport::view::View;
     let report: serde_json::Value =
         serde_json::from_str(&stdout(&tyndall(&["show", "earth-paper", "--json"]))).unwrap();
     let planet = tyndall::preset::load("earth-paper", &[]).unwrap();

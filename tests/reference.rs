@@ -4,8 +4,8 @@
 mod common;
 
 use std::f64::consts::PI;
+use tyndall::geometry::Point;
 use tyndall::medium::{Constituent, DensityProfile, Medium, PhaseFunction, Role};
-use tyndall::points::Point;
 use tyndall::reference::{Estimate, Settings, Tracer};
 
 /// A planet with one constituent at one wavelength.

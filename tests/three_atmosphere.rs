@@ -3,13 +3,13 @@
 
 use tyndall::bake::settings::{Layout, Settings};
 use tyndall::bake::{Product, bake};
-use tyndall::export::exr::from_exr_bytes;
-use tyndall::points::Point;
+use tyndall::files::exr::from_exr_bytes;
+use tyndall::geometry::Point;
+use tyndall::geometry::view::View;
+use tyndall::mapping::Bruneton;
 use tyndall::preset::{self, Planet};
 use tyndall::sky::{AerosolPhase, Component, Sky};
-use tyndall::table::Bruneton;
 use tyndall::transport::solve::{Orders, Resolution, Solution};
-use tyndall::transport::view::View;
 
 const FOLDER: &str = "in memory";
 

@@ -2,8 +2,8 @@
 
 use super::settings::{Layout, Settings};
 use super::{compact, elek2010};
+use crate::mapping::{Bruneton, Elek2010};
 use crate::medium::{Medium, Sheet};
-use crate::table::{Bruneton, Elek2010};
 
 /// A warning for each sheet that is thinner than the distance of the altitudes about it in a layout that is baked.
 pub fn sheets(medium: &Medium, settings: &Settings) -> Vec<String> {
@@ -76,10 +76,10 @@ fn step(table: &Elek2010, [bottom, top]: [f64; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mapping::Window;
     use crate::medium::DensityProfile;
     use crate::preset;
     use crate::spectrum::grid;
-    use crate::table::Window;
 
     /// Warnings of the preset earth-paper with its aerosol in a layer, m.
     fn told(bottom: f64, top: f64, settings: &Settings) -> Vec<String> {

@@ -6,7 +6,7 @@ use super::palette::Palette;
 use super::settings::Settings;
 use super::versions;
 use super::water::WaterTables;
-use crate::export::manifest::{Adapted, Colour, GridKind, Manifest, Preset, SCHEMA_VERSION, Wavelengths};
+use crate::files::manifest::{Adapted, Colour, GridKind, Manifest, Preset, SCHEMA_VERSION, Wavelengths};
 use crate::medium::{Medium, Role};
 use crate::preset::{Planet, Water};
 use crate::spectrum::{Adaptation, chromaticity};

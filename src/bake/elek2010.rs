@@ -7,10 +7,10 @@
 use super::extinction::{Held, Matter, table};
 use super::palette::Palette;
 use super::tables::{Baked, Channel, axes_of, axis, file_order};
-use crate::export::manifest::{Axis, Encoding};
-use crate::lanes::Lanes;
+use crate::files::manifest::{Axis, Encoding};
+use crate::machine::lanes::Lanes;
+use crate::mapping::{Bends, Elek2010, SunCurve, Views, Window};
 use crate::medium::{Medium, Role};
-use crate::table::{Bends, Elek2010, SunCurve, Views, Window};
 use crate::transport::Phase;
 use crate::transport::fill::{Painter, RayLight, SunPairs, Wanted};
 use crate::transport::solve::{Batch, Solution};
@@ -114,7 +114,7 @@ fn fill(medium: &Medium, solution: &Solution, palette: &Palette, mapping: &Elek2
                     }
                     return;
                 }
-                crate::isa::run(
+                crate::machine::isa::run(
                     #[inline(always)]
                     || weights.add(light, &last, mu as f32, &pairs, out),
                 );

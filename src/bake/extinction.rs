@@ -6,9 +6,9 @@
 use super::elek2010::power_of_two;
 use super::palette::Palette;
 use super::tables::{Baked, Channel, axis};
-use crate::export::manifest::{Axis, Encoding};
+use crate::files::manifest::{Axis, Encoding};
+use crate::mapping::{Elek2010, Views};
 use crate::medium::Medium;
-use crate::table::{Elek2010, Views};
 use crate::transport::fill::Painter;
 use crate::transport::solve::Solution;
 use half::f16;

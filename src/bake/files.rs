@@ -3,8 +3,8 @@
 use super::settings::Storage;
 use super::tables::Baked;
 use crate::error::Result;
-use crate::export::manifest::{Encoding, EncodingKind, InContainer, OtherFile, Table};
-use crate::export::{Atlas, Samples, exr};
+use crate::files::manifest::{Encoding, EncodingKind, InContainer, OtherFile, Table};
+use crate::files::{Atlas, Samples, exr};
 use half::f16;
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};

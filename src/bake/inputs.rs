@@ -3,8 +3,8 @@
 
 use super::settings::Settings;
 use super::versions;
-use crate::export::changes::{Change, changes};
-use crate::export::manifest::{Manifest, Tool};
+use crate::files::changes::{Change, changes};
+use crate::files::manifest::{Manifest, Tool};
 use crate::preset::Planet;
 use serde_json::{Map, Value, json};
 

@@ -1,6 +1,6 @@
 //! Light that several bakes share, where they differ in their tables alone: solving it is most of the work.
 
-use crate::clock::cpu_time;
+use crate::machine::cpu_time::cpu_time;
 use crate::medium::Medium;
 use crate::transport::solve::{LevelCounts, Orders, Resolution, Solution};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

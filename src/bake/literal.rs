@@ -4,11 +4,11 @@ use super::elek2010::{Oddities, finish, mapping};
 use super::palette::Palette;
 use super::settings::{Settings, Solver};
 use super::tables::Baked;
+use crate::algorithm1;
 use crate::error::{Error, Result};
-use crate::lanes::{Lanes, WIDTH};
+use crate::machine::lanes::{Lanes, WIDTH};
+use crate::mapping::Window;
 use crate::medium::Medium;
-use crate::methods::literal;
-use crate::table::Window;
 use crate::transport::solve::{Orders, Solution};
 
 /// The layout's tables. `solution` supplies direct sunlight and optical depth only.
@@ -31,8 +31,8 @@ pub fn tables(
     let rgb = palette.rgb_weights();
     for first in (0..medium.wavelengths_nm.len()).step_by(WIDTH) {
         let range: Vec<usize> = (first..medium.wavelengths_nm.len().min(first + WIDTH)).collect();
-        let algorithm = literal::Settings { size, orders, samples, gather, ..Default::default() };
-        let part = literal::bake(&medium.at_wavelengths(&range), &algorithm, &|_, _| {})?;
+        let algorithm = algorithm1::Settings { size, orders, samples, gather, ..Default::default() };
+        let part = algorithm1::bake(&medium.at_wavelengths(&range), &algorithm, &|_, _| {})?;
         let dot = |light: Lanes, weight: &dyn Fn(usize) -> f64| -> f64 {
             range.iter().enumerate().map(|(k, &w)| f64::from(light[k]) * weight(w)).sum()
         };

@@ -5,9 +5,9 @@
 
 use super::compact::groups;
 use super::settings::{Layout, Settings};
+use crate::mapping::Bruneton;
 use crate::medium::{Constituent, Medium};
 use crate::preset::Planet;
-use crate::table::Bruneton;
 use crate::transport::extent::Extent;
 use crate::transport::solve::{Orders, Resolution, needed_degrees};
 

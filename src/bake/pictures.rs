@@ -1,13 +1,13 @@
 //! `preview.png`: skies from the ground as the sun goes down, and the planet from space.
 
 use crate::error::Result;
-use crate::export::picture::{Exposure, fisheye, from_space};
-use crate::export::sheet::{Panel, contact_sheet};
-use crate::points::Point;
+use crate::files::picture::{Exposure, fisheye, from_space};
+use crate::files::sheet::{Panel, contact_sheet};
+use crate::geometry::Point;
+use crate::mapping::Window;
 use crate::preset::Planet;
 use crate::sky::water::{WaterSky, WaterView};
 use crate::sky::{Component, Sky};
-use crate::table::Window;
 
 const SIZE: usize = 144;
 const COLUMNS: usize = 4;

@@ -12,7 +12,7 @@ use super::{
     vectors, water,
 };
 use crate::error::{Error, Result};
-use crate::export::manifest::Manifest;
+use crate::files::manifest::Manifest;
 use crate::medium::Medium;
 use crate::preset::{Planet, Water};
 use crate::sky::water::WaterSky;
@@ -359,7 +359,7 @@ pub fn check_folded(medium: &Medium, name: &str) -> Result<()> {
     if scatterers.contains(&name) {
         return Ok(());
     }
-    let near = crate::names::nearest(name, scatterers.iter().copied());
+    let near = crate::preset::names::nearest(name, scatterers.iter().copied());
     let known = match near {
         Some(near) => format!("the nearest is `{near}`"),
         None => format!("there is {}", scatterers.join(", ")),

@@ -1,15 +1,15 @@
 //! The quality report of a bake: its tables against direct integration, and what the solver says of itself.
 
 use super::palette::{ColourError, Palette};
+use crate::geometry::Point;
+use crate::geometry::view::View;
+use crate::mapping::Window;
 use crate::medium::Medium;
-use crate::points::Point;
 use crate::quality::{Distribution, REGIONS, Scope, colour_error, digits, relative_errors, views};
 use crate::sky::{AerosolPhase, Component, Sky};
 use crate::spectrum::{delta_e_2000_scaled, multiply};
-use crate::table::Window;
 use crate::transport::balance::balance;
 use crate::transport::solve::{Orders, Solution, worst};
-use crate::transport::view::View;
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 

@@ -2,10 +2,10 @@
 
 use super::compact::{Design, Sizes};
 use super::water::Waters;
-use crate::export::container::Container;
-use crate::methods::literal::Gather;
+use crate::algorithm1::Gather;
+use crate::files::container::Container;
+use crate::mapping::{Elek2010, Views, Window};
 use crate::spectrum::{ColourSpace, Rgb, White};
-use crate::table::{Elek2010, Views, Window};
 use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
 use serde_json::{Value, json};

@@ -1,11 +1,11 @@
 //! A sample of a planet's own skies, on which colours are fitted and judged.
 
 use crate::error::{Error, Result};
-use crate::export::exr::{Spectral, from_exr_bytes, spectral_attributes, spectral_channel, to_exr_bytes};
-use crate::export::{Atlas, Samples};
-use crate::lanes::Lanes;
+use crate::files::exr::{Spectral, from_exr_bytes, spectral_attributes, spectral_channel, to_exr_bytes};
+use crate::files::{Atlas, Samples};
+use crate::machine::lanes::Lanes;
+use crate::mapping::{Views, Window};
 use crate::medium::Medium;
-use crate::table::{Views, Window};
 use crate::transport::fill::{Painter, RayLight, SunPairs, Wanted};
 use crate::transport::solve::{Batch, Solution, lowest_sun};
 use std::path::Path;

@@ -3,11 +3,11 @@
 use super::elek2010::mapping;
 use super::settings::Settings;
 use crate::error::Result;
-use crate::export::exr::{Spectral, spectral_attributes, spectral_channel, to_exr_bytes};
-use crate::export::{Atlas, Samples};
+use crate::files::exr::{Spectral, spectral_attributes, spectral_channel, to_exr_bytes};
+use crate::files::{Atlas, Samples};
+use crate::mapping::Elek2010;
 use crate::medium::{Medium, Role};
 use crate::preset::Planet;
-use crate::table::Elek2010;
 use crate::transport::fill::{Painter, RayLight, SunPairs, Wanted};
 use crate::transport::solve::Solution;
 use rayon::prelude::*;

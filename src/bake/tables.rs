@@ -1,9 +1,9 @@
 //! A finished table: its samples in file order and what the manifest says of it.
 
 use super::three_atmosphere;
-use crate::export::atlas::{Atlas, Samples};
-use crate::export::manifest::{Axis, ChannelInfo, Encoding, Packing, Precision, Table};
-use crate::table::{AxisFormula, Elek2010, HALVES, WINDOW};
+use crate::files::atlas::{Atlas, Samples};
+use crate::files::manifest::{Axis, ChannelInfo, Encoding, Packing, Precision, Table};
+use crate::mapping::{AxisFormula, Elek2010, HALVES, WINDOW};
 
 /// A table of up to four channels, texels in the order x, y, z, w with x fastest (z and w share the slices).
 pub struct Baked {

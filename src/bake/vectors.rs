@@ -1,11 +1,12 @@
 //! Golden vectors: what the look-ups of a layout answer at some views, beside its tables, so that whoever ports the
 //! look-ups to another language can hold the port against them.
 
+use crate::files::points::COLUMNS;
+use crate::geometry::Point;
+use crate::mapping::Window;
 use crate::medium::Medium;
-use crate::points::{COLUMNS, Point};
 use crate::quality::{REGIONS, Scope, views};
 use crate::sky::{AerosolPhase, Channels, Component, Sky};
-use crate::table::Window;
 
 /// Views a region, and number of the sequence that they are of: others than the report's.
 const VIEWS: usize = 12;

@@ -3,7 +3,7 @@
 
 use super::settings::{Layout, Settings};
 use super::{compact, elek2010, three_atmosphere, water};
-use crate::export::manifest::Tool;
+use crate::files::manifest::Tool;
 use crate::transport;
 use std::collections::BTreeMap;
 

@@ -1,9 +1,9 @@
 //! What a method costs, and how far it is off.
 
 use super::truth::{Scene, Truth};
-use crate::clock::thread_time;
+use crate::geometry::Point;
+use crate::machine::cpu_time::thread_time;
 use crate::methods::{Family, Method, PreparedSky};
-use crate::points::Point;
 use crate::preset::Planet;
 use crate::quality::{Distribution, colour_error};
 use crate::spectrum::{ColourSpace, delta_e_2000_scaled, multiply};

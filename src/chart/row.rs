@@ -2,7 +2,8 @@
 
 use super::{Chart, Errors};
 use crate::error::{Error, Result};
-use crate::input::{self, MOST_CSV};
+use crate::files::bounded_read;
+use crate::files::bounded_read::MOST_CSV;
 use crate::methods::Family;
 use crate::quality::{Distribution, REGIONS, digits};
 use serde::{Deserialize, Serialize};
@@ -110,7 +111,7 @@ pub fn to_csv(rows: &[Row]) -> Result<Vec<u8>> {
 /// # Errors
 /// `File` for what is no chart.
 pub fn read_csv(path: &Path) -> Result<Vec<Row>> {
-    parse_csv(path, input::text(path, MOST_CSV)?.as_bytes())
+    parse_csv(path, bounded_read::text(path, MOST_CSV)?.as_bytes())
 }
 
 /// The same of a text; `path` is for messages only.

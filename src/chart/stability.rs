@@ -5,21 +5,21 @@
 //! nadir, suns from overhead to 18° below the horizon and at the end of the tables' sun axis, towards the sun, across
 //! and away. Errors are told of lit views by day, where a number means something on every planet.
 
+use crate::algorithm1::Gather;
 use crate::bake::Lights;
 use crate::bake::compact::Sizes;
 use crate::bake::settings::{Layout, Settings, Solver};
 use crate::error::Result;
+use crate::geometry::Point;
+use crate::geometry::view::View;
 use crate::medium::Role;
-use crate::methods::literal::Gather;
 use crate::methods::{
     BakedTables, Elek2009, Family, Method, Nishita, OneilMarch, PreparedSky, Schafhitzel, Storage,
 };
-use crate::points::Point;
 use crate::preset::{self, Coefficient, Optics, PhaseLaw, Planet, Substance};
 use crate::quality::{Distribution, colour_error};
 use crate::spectrum::{ColourSpace, Reconstruction, Spectrum, grid, multiply};
 use crate::transport::solve::{Orders, Resolution, lowest_sun};
-use crate::transport::view::View;
 use rayon::prelude::*;
 use std::sync::Arc;
 

@@ -2,13 +2,13 @@
 
 use super::Effort;
 use crate::error::{Error, Result};
-use crate::points::Point;
+use crate::geometry::Point;
+use crate::geometry::view::View;
 use crate::preset::Planet;
 use crate::quality::{REGIONS, views};
 use crate::reference::{Settings, Tracer};
 use crate::spectrum::Reconstruction;
 use crate::transport::solve::{Orders, Resolution, Solution};
-use crate::transport::view::View;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 

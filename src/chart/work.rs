@@ -2,8 +2,8 @@
 
 use super::Effort;
 use crate::error::{Error, Result};
-use crate::export::whole;
-use crate::input;
+use crate::files::bounded_read;
+use crate::files::whole;
 use crate::preset::Planet;
 use serde::{Serialize, de::DeserializeOwned};
 use std::path::{Path, PathBuf};
@@ -32,8 +32,9 @@ impl Work {
     ) -> Result<T> {
         let address = blake3::hash(format!("{} {name}", self.made_of).as_bytes()).to_hex();
         let path = self.folder.join(format!("{address}.json"));
-        let kept =
-            input::named_text(&path, u64::MAX - 1).ok().and_then(|text| serde_json::from_str(&text).ok());
+        let kept = bounded_read::named_text(&path, u64::MAX - 1)
+            .ok()
+            .and_then(|text| serde_json::from_str(&text).ok());
         if let Some(part) = kept {
             return Ok(part);
         }

@@ -9,7 +9,7 @@ use crate::chart::{
     measure, read_csv, rows, to_csv,
 };
 use crate::error::{Error, Result};
-use crate::export::whole;
+use crate::files::whole;
 use crate::methods::{Method, catalogue};
 use crate::preset::{self, Planet};
 use crate::quality::{REGIONS, digits};

@@ -2,7 +2,8 @@
 
 use super::colour_views::{are_views, views};
 use crate::error::{Error, Result};
-use crate::input::{self, MOST_CSV};
+use crate::files::bounded_read;
+use crate::files::bounded_read::MOST_CSV;
 use crate::spectrum::{OBSERVER_RANGE, Spectrum, planck_law};
 use std::path::{Path, PathBuf};
 
@@ -23,10 +24,10 @@ pub struct Input {
 /// a spectrum, or the columns of `tyndall sample`; lines that start with # are comments. Errors name file, line, column and value.
 pub fn read(path: Option<&Path>) -> Result<Input> {
     match path {
-        Some(path) if path != Path::new("-") => parse(path, &input::text(path, MOST_CSV)?),
+        Some(path) if path != Path::new("-") => parse(path, &bounded_read::text(path, MOST_CSV)?),
         _ => {
             let label = PathBuf::from("(standard input)");
-            parse(&label, &input::text_of(&label, std::io::stdin(), MOST_CSV)?)
+            parse(&label, &bounded_read::text_of(&label, std::io::stdin(), MOST_CSV)?)
         }
     }
 }

@@ -4,7 +4,7 @@
 use super::colour_input::{Named, number, one_spectrum};
 use super::text::say;
 use crate::error::{Error, Result};
-use crate::points::COLUMNS;
+use crate::files::points::COLUMNS;
 use crate::preset::read_spectrum;
 use crate::spectrum::{Observer, Spectrum, at_nanometres};
 use std::f64::consts::PI;

@@ -7,8 +7,8 @@ mod views;
 use super::text;
 use crate::bake::inputs;
 use crate::error::{Error, Result};
-use crate::export::changes::Change;
-use crate::export::manifest::Manifest;
+use crate::files::changes::Change;
+use crate::files::manifest::Manifest;
 use crate::quality::Distribution;
 use std::path::{Path, PathBuf};
 

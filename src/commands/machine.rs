@@ -1,7 +1,7 @@
 //! Arguments about the machine and the run, shared by commands: threads, instruction set, wavelengths, orders.
 
 use crate::error::{Error, Result};
-use crate::isa::Isa;
+use crate::machine::isa::Isa;
 use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
 use std::error::Error as _;

@@ -79,5 +79,5 @@ fn planned(args: &Args, scene: &Scene) -> Result<Plan> {
             say(&format!("{:6.1} s  {text}", start.elapsed().as_secs_f64()));
         }
     };
-    plan(&planet, scene, &effort, &mut talk, &|| crate::clock::cpu_time().as_secs_f64())
+    plan(&planet, scene, &effort, &mut talk, &|| crate::machine::cpu_time::cpu_time().as_secs_f64())
 }

@@ -1,12 +1,12 @@
 //! The colours that a preset implies: of the zenith, by a quick solve, and of deep water.
 
 use crate::error::Result;
-use crate::points::Point;
+use crate::geometry::Point;
+use crate::geometry::view::View;
 use crate::preset::{self, Planet, Water};
 use crate::spectrum::{ColourSpace, chromaticity, grid, hat_weights, multiply, srgb_encode, weighted};
 use crate::transport::slab::{Layer, Light, Slab, Streams, Surface, WaterOrders, leaving};
 use crate::transport::solve::{LevelCounts, Orders, Resolution, Solution, worst};
-use crate::transport::view::View;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::f64::consts::PI;

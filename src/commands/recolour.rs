@@ -5,9 +5,9 @@ use super::text::print;
 use crate::bake::recolour::{Source, Wanted, recolour};
 use crate::bake::{compact, skies};
 use crate::error::{Error, Result};
-use crate::export::manifest::{MANIFEST, Manifest};
-use crate::export::staging::Staging;
-use crate::input;
+use crate::files::bounded_read;
+use crate::files::manifest::{MANIFEST, Manifest};
+use crate::files::staging::Staging;
 use crate::sky::pictures;
 use crate::spectrum::{Adaptation, Beholder, ColourSpace, Rgb, White};
 use std::path::PathBuf;
@@ -114,7 +114,7 @@ fn checked(folder: &std::path::Path, manifest: &Manifest, file: &str) -> Result<
     let Some((_, hash)) = tables.chain(others).find(|f| f.0 == file) else {
         return Err(Error::file(&path, "not in this bake, which is of an older tyndall: bake it anew"));
     };
-    let bytes = input::part(folder, file).map_err(|e| Error::reading(&path, e))?;
+    let bytes = bounded_read::part(folder, file).map_err(|e| Error::reading(&path, e))?;
     if blake3::hash(&bytes).to_hex().as_str() != hash {
         return Err(Error::file(&path, "not the file that was baked (bake.json has another BLAKE3)"));
     }

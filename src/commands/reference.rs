@@ -3,9 +3,10 @@
 use super::machine::{in_range, with_threads};
 use super::text::{say, stream, watched};
 use crate::error::{Error, Result};
+use crate::files::points::{Answer, read_points, write_answers};
+use crate::geometry::Point;
+use crate::machine::memory;
 use crate::medium::Medium;
-use crate::memory;
-use crate::points::{Answer, Point, read_points, write_answers};
 use crate::reference::{Estimate, ORDERS, Settings, Tracer};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::Write;

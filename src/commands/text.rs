@@ -1,6 +1,6 @@
 //! Numbers as text, and where text goes.
 
-pub use crate::output::{print, say, stream, watched};
+pub use crate::machine::output::{print, say, stream, watched};
 
 /// A number to nine significant digits: plain where that is short, else with an exponent.
 pub fn number(v: f64) -> String {

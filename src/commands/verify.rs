@@ -3,11 +3,11 @@
 use super::text;
 use crate::bake::versions;
 use crate::error::{Error, Line, Result};
-use crate::export::atlas::{Atlas, Samples};
-use crate::export::exr::from_exr_bytes;
-use crate::export::foreign::foreign;
-use crate::export::manifest::{MANIFEST, Manifest, Precision, Table, hash_of};
-use crate::input;
+use crate::files::atlas::{Atlas, Samples};
+use crate::files::bounded_read;
+use crate::files::exr::from_exr_bytes;
+use crate::files::foreign::foreign;
+use crate::files::manifest::{MANIFEST, Manifest, Precision, Table, hash_of};
 use crate::preset;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Display;
@@ -175,10 +175,10 @@ fn about_algorithms(recorded: &BTreeMap<String, u32>) -> Vec<Difference> {
 
 /// A file's presence and hash, then what `content` finds in it.
 fn check_file(folder: &Path, file: &str, hash: &str, content: impl Fn(&[u8]) -> Vec<String>) -> Vec<String> {
-    if !input::is_inside(file) {
+    if !bounded_read::is_inside(file) {
         return vec!["the manifest points outside the bake".into()];
     }
-    match input::part(folder, file) {
+    match bounded_read::part(folder, file) {
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => vec!["is missing".into()],
         Err(e) => vec![format!("cannot be read: {e}")],
         Ok(bytes) => {

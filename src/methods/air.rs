@@ -1,11 +1,11 @@
 //! The medium as the older methods see it: three wavelengths, and rays through a shell.
 
-use super::literal::{altitude_along, radius_along};
+use crate::algorithm1::{altitude_along, radius_along};
+use crate::geometry::Point;
+use crate::geometry::view::View;
 use crate::medium::{DensityProfile, PhaseFunction};
-use crate::points::Point;
 use crate::preset::Planet;
 use crate::spectrum::ColourSpace;
-use crate::transport::view::View;
 use std::f64::consts::FRAC_1_PI;
 
 /// Red, green and blue, or a quantity at their wavelengths.

@@ -1,10 +1,10 @@
 //! The methods and settings that a chart compares.
 
 use super::{BakedTables, Elek2009, Family, Method, Nishita, OneilMarch, Schafhitzel, Storage};
+use crate::algorithm1::Gather;
 use crate::bake::Lights;
 use crate::bake::compact::Sizes;
 use crate::bake::settings::{Layout, Settings, Solver};
-use crate::methods::literal::Gather;
 use crate::spectrum::grid;
 use crate::transport::solve::Orders;
 use std::sync::Arc;

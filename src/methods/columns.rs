@@ -2,8 +2,8 @@
 //! they are run with many steps, as preparing a table allows.
 
 use super::air::{Air, OnRay, Rgb};
-use super::literal::altitude_along;
-use crate::table::{Array, Elek2010, texel};
+use crate::algorithm1::altitude_along;
+use crate::mapping::{Array, Elek2010, texel};
 
 /// Texels of altitude and distance to the top.
 const SIZE: [usize; 2] = [96, 192];

@@ -7,9 +7,9 @@ use super::air::{Air, OnRay, Rgb, on_ray, through};
 use super::oneil::DepthTable;
 use super::{Family, Method, Prepared, PreparedSky};
 use crate::error::Result;
-use crate::points::Point;
+use crate::geometry::Point;
+use crate::geometry::view::View;
 use crate::preset::Planet;
-use crate::transport::view::View;
 
 /// Brute force: so many steps along the view, and towards the sun at each.
 pub struct Nishita {

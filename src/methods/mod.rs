@@ -10,7 +10,6 @@ mod baked;
 pub mod catalogue;
 mod columns;
 mod elek2009;
-pub mod literal;
 mod march;
 mod oneil;
 mod schafhitzel;
@@ -22,7 +21,7 @@ pub use march::{Nishita, OneilMarch};
 pub use schafhitzel::Schafhitzel;
 
 use crate::error::Result;
-use crate::points::Point;
+use crate::geometry::Point;
 use crate::preset::Planet;
 use std::time::Duration;
 
@@ -94,9 +93,13 @@ pub struct Prepared {
 impl Prepared {
     /// Prepares and takes the time of it.
     fn timed<S: PreparedSky + 'static>(prepare: impl FnOnce() -> S) -> Prepared {
-        let start = crate::clock::cpu_time();
+        let start = crate::machine::cpu_time::cpu_time();
         let sky = Box::new(prepare());
-        Prepared { sky, cpu: crate::clock::cpu_time().saturating_sub(start), warnings: Vec::new() }
+        Prepared {
+            sky,
+            cpu: crate::machine::cpu_time::cpu_time().saturating_sub(start),
+            warnings: Vec::new(),
+        }
     }
 }
 

@@ -6,7 +6,7 @@
 
 use super::air::{Air, OnRay};
 use super::march::march_columns;
-use crate::table::texel;
+use crate::mapping::texel;
 use rayon::prelude::*;
 
 /// A column that lets nothing through, m.

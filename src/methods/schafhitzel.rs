@@ -12,10 +12,10 @@ use super::oneil::DepthTable;
 use super::texture::{TEXEL, to_halves};
 use super::{Family, Method, Prepared, PreparedSky};
 use crate::error::Result;
-use crate::points::Point;
+use crate::geometry::Point;
+use crate::geometry::view::View;
+use crate::mapping::{Array, texel};
 use crate::preset::Planet;
-use crate::table::{Array, texel};
-use crate::transport::view::View;
 
 /// Texels of altitude, sun and view; 128 each were published.
 pub struct Schafhitzel {

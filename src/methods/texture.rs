@@ -1,8 +1,8 @@
 //! Colours as textures of halves hold them.
 
 use super::air::Rgb;
-use crate::export::atlas::half_from;
-use crate::table::Array;
+use crate::files::atlas::half_from;
+use crate::mapping::Array;
 
 /// The largest half that a scaled table may reach.
 const BRIGHTEST: f64 = 32768.0;

@@ -1,13 +1,13 @@
 //! Views of a scene with their true colours, and how far a sky is from them.
 
+use crate::geometry::Point;
+use crate::geometry::view::View;
 use crate::medium::Medium;
-use crate::points::Point;
 use crate::preset::{Metric, Scene, Tolerance};
 use crate::quality::{Distribution, Scope, colour_error};
 use crate::sky::{Component, Sky};
 use crate::spectrum::{ColourSpace, Reconstruction, delta_e_2000_scaled, multiply};
 use crate::transport::solve::Solution;
-use crate::transport::view::View;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 

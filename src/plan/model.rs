@@ -4,9 +4,9 @@
 use crate::bake::compact::{Design, IRRADIANCE_SIZE, groups_to_fold};
 use crate::bake::extinction::PHASE_SIZE;
 use crate::bake::settings::{Layout, Settings, TOLERANCE, WAVELENGTHS};
+use crate::mapping::{Views, Window};
 use crate::medium::Medium;
 use crate::spectrum::grid;
-use crate::table::{Views, Window};
 use crate::transport::solve::Orders;
 
 /// Bytes of a texel: four halves.

@@ -4,9 +4,9 @@ use super::lab::Lab;
 use super::model::Model;
 use crate::bake::compact::{self, Kind, Sizes, groups_to_fold};
 use crate::error::Result;
+use crate::mapping::{Views, Window};
 use crate::medium::Medium;
 use crate::preset::Scene;
-use crate::table::{Views, Window};
 use crate::transport::solve::Orders;
 
 /// One thing to leave out.

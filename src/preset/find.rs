@@ -2,9 +2,10 @@
 
 use super::kind::PresetKind;
 use super::library::{self, shipped_names, shipped_water_names};
+use super::names;
 use crate::error::{Error, Result};
-use crate::input::{self, MOST_JSON};
-use crate::names;
+use crate::files::bounded_read;
+use crate::files::bounded_read::MOST_JSON;
 use std::path::Path;
 
 /// Layouts, which are taken for presets where a comma is missing in a list of them.
@@ -25,7 +26,7 @@ pub fn find(name_or_path: &str, wanted: PresetKind) -> Result<(String, String)> 
         return Ok((file, text.to_string()));
     }
     if is_path(name_or_path) {
-        return Ok((name_or_path.to_string(), input::text(Path::new(name_or_path), MOST_JSON)?));
+        return Ok((name_or_path.to_string(), bounded_read::text(Path::new(name_or_path), MOST_JSON)?));
     }
     Err(unknown(name_or_path, wanted))
 }

@@ -3,7 +3,8 @@
 use super::find::kind_of_shipped;
 use super::json;
 use crate::error::{Error, Result};
-use crate::input::{self, MOST_JSON};
+use crate::files::bounded_read;
+use crate::files::bounded_read::MOST_JSON;
 use serde_json::Value;
 use std::path::Path;
 
@@ -84,7 +85,7 @@ pub fn kind(name_or_path: &str) -> Option<PresetKind> {
         return Some(kind);
     }
     // A pipe is read once, for what it is asked for.
-    let text = input::named_text(Path::new(name_or_path), MOST_JSON).ok()?;
+    let text = bounded_read::named_text(Path::new(name_or_path), MOST_JSON).ok()?;
     of(&json::parse(name_or_path, &text).ok()?)
 }
 

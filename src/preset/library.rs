@@ -1,7 +1,8 @@
 //! The presets and spectra that are inside the binary.
 
 use crate::error::{Error, Result};
-use crate::input::{self, MOST_CSV};
+use crate::files::bounded_read;
+use crate::files::bounded_read::MOST_CSV;
 use crate::spectrum::Spectrum;
 use std::path::{Path, PathBuf};
 
@@ -150,7 +151,7 @@ pub fn spectrum(name: &str, quantity: &str, beside: &str) -> Result<Option<Spect
         return parse(&format!("presets/spectra/{name}.csv"), text, quantity).map(Some);
     }
     let Some(path) = spectrum_path(name, beside) else { return Ok(None) };
-    let text = input::named_text(&path, MOST_CSV)?;
+    let text = bounded_read::named_text(&path, MOST_CSV)?;
     parse(&path.display().to_string(), &text, quantity).map(Some)
 }
 

@@ -13,6 +13,7 @@ mod json;
 mod kind;
 mod library;
 mod lost;
+pub mod names;
 mod overrides;
 mod phase;
 mod planet;

@@ -4,9 +4,9 @@
 //! `constituents.1`) or by their name (`constituents.aerosol`). The value is JSON, or a bare text where it is not;
 //! `null` takes the key or item away. Sources stay honest: the object changed says that it was.
 
+use super::names::{nearest, quoted};
 use super::raw::bears_numbers;
 use crate::error::{Error, Result};
-use crate::names::{nearest, quoted};
 use serde_json::{Map, Value};
 
 /// Applies one assignment. Errors: no `=`, a path that leads nowhere (with the nearest key that exists).

@@ -1,8 +1,9 @@
 //! A value of a preset file with the path that leads to it, so that every complaint says where.
 
 use super::bounds::Bounds;
+use super::names;
+use super::names::nearest;
 use crate::error::{Error, Result};
-use crate::names::{self, nearest};
 use serde_json::{Map, Value};
 
 /// Longest length of a preset, m: more than the radius of the largest star.

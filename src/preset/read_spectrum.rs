@@ -2,9 +2,9 @@
 
 use super::bounds::{self, Bounds, NOT_NEGATIVE};
 use super::library;
+use super::names;
 use super::raw::{Raw, WITHOUT_QUOTES};
 use crate::error::Result;
-use crate::names;
 use crate::spectrum::{RANGE, Spectrum};
 
 /// What values a spectral quantity may take.

@@ -1,7 +1,7 @@
 //! Views drawn at random from a stated range, as a camera there would meet them.
 
-use crate::points::Point;
-use crate::table::{Views, Window};
+use crate::geometry::Point;
+use crate::mapping::{Views, Window};
 use sobol_burley::sample;
 
 /// Share of the views from inside the air that lie close to the horizon: a twelfth of the sphere, where most of a

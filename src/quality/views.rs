@@ -1,6 +1,6 @@
 //! Views on which tables are judged.
 
-use crate::points::Point;
+use crate::geometry::Point;
 
 /// A kind of view, told apart because tables err differently there.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use super::Tracer;
 use super::path::{Light, ORDERS, Scratch, follow};
 use super::random::Numbers;
 use super::scene::Segment;
-use crate::points::Point;
+use crate::geometry::Point;
 use glam::DVec3;
 use rayon::prelude::*;
 

@@ -22,8 +22,8 @@ pub mod water;
 pub use estimate::{Estimate, Settings};
 pub use path::ORDERS;
 
+use crate::geometry::Point;
 use crate::medium::Medium;
-use crate::points::Point;
 use glam::DVec3;
 use path::{Scratch, follow};
 use random::Numbers;

@@ -2,8 +2,8 @@
 
 use super::Source;
 use crate::error;
-use crate::export::Atlas;
-use crate::export::manifest::Table;
+use crate::files::Atlas;
+use crate::files::manifest::Table;
 use crate::medium::check_shell;
 
 impl Source<'_> {

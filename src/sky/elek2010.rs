@@ -3,8 +3,8 @@
 use super::volume::{Plane, Volume, enter, sun_at_ground};
 use super::{AerosolPhase, Component, Source, multiply};
 use crate::error::Result;
-use crate::points::Point;
-use crate::table::Elek2010;
+use crate::geometry::Point;
+use crate::mapping::Elek2010;
 use std::f64::consts::{FRAC_1_PI, PI};
 
 /// The layout of Elek & Kmoch 2010 in memory.

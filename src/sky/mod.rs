@@ -11,10 +11,10 @@ mod volume;
 pub mod water;
 
 use crate::error::{Error, Result};
-use crate::export::manifest::{Manifest, Table};
-use crate::export::{Atlas, exr};
-use crate::input;
-use crate::points::Point;
+use crate::files::bounded_read;
+use crate::files::manifest::{Manifest, Table};
+use crate::files::{Atlas, exr};
+use crate::geometry::Point;
 use compact::Compact;
 use elek2010::Elek2010Sky;
 use std::collections::BTreeMap;
@@ -143,7 +143,7 @@ pub fn pictures(bake: &Path, manifest: &Manifest, layout: &str) -> Result<BTreeM
 /// `File` for a file that is missing, damaged, or another than the one that was baked.
 pub fn picture(folder: &Path, table: &Table) -> Result<Atlas> {
     let path = folder.join(&table.file);
-    let bytes = input::part(folder, &table.file).map_err(|e| Error::reading(&path, e))?;
+    let bytes = bounded_read::part(folder, &table.file).map_err(|e| Error::reading(&path, e))?;
     let atlas = exr::from_exr_bytes(&path, &bytes)?;
     if blake3::hash(&bytes).to_hex().as_str() != table.blake3 {
         return Err(Error::file(&path, "not the file that was baked (bake.json has another BLAKE3)"));

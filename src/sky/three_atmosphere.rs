@@ -3,9 +3,9 @@
 use super::volume::{Place, Texels, enter, sun_at_ground};
 use super::{Component, Source};
 use crate::error::Result;
+use crate::geometry::Point;
+use crate::mapping::{Bruneton, texel};
 use crate::medium::PhaseFunction;
-use crate::points::Point;
-use crate::table::{Bruneton, texel};
 use std::f64::consts::FRAC_1_PI;
 
 /// The layout in memory.

@@ -1,8 +1,8 @@
 //! Tables in memory: stored samples, interpolated before they are decoded, as a texture unit would.
 
-use crate::export::Atlas;
-use crate::export::manifest::{Encoding, Table};
-use crate::table::{Bends, Elek2010, HALVES, Layer, Span, SunCurve, Texel, Views, WINDOW, texel};
+use crate::files::Atlas;
+use crate::files::manifest::{Encoding, Table};
+use crate::mapping::{Bends, Elek2010, HALVES, Layer, Span, SunCurve, Texel, Views, WINDOW, texel};
 
 /// Stored samples of up to four channels, x fastest, and how each channel is decoded.
 pub(super) struct Texels {
@@ -193,7 +193,7 @@ impl Plane {
 }
 
 /// The point of view as a place inside the shell of `mapping`; none where the ray misses the atmosphere.
-pub fn enter(point: &crate::points::Point, mapping: &Elek2010) -> Option<Place> {
+pub fn enter(point: &crate::geometry::Point, mapping: &Elek2010) -> Option<Place> {
     let [ground, top] = mapping.radii();
     let nu = point.nu().clamp(-1.0, 1.0);
     let height = top - ground;
@@ -214,7 +214,7 @@ pub fn enter(point: &crate::points::Point, mapping: &Elek2010) -> Option<Place> 
 
 /// What of a view is beyond the tables of a window, as key, value and reason; none where nothing is, or where the ray
 /// misses the air. Angles and altitudes may be rounded as a CSV file has them.
-pub fn outside(point: &crate::points::Point, mapping: &Elek2010) -> Option<(&'static str, f64, String)> {
+pub fn outside(point: &crate::geometry::Point, mapping: &Elek2010) -> Option<(&'static str, f64, String)> {
     const ROUNDED: f64 = 1e-4;
     let place = enter(point, mapping)?;
     let [ground, top] = mapping.radii();

@@ -3,10 +3,10 @@
 use super::volume::Texels;
 use super::{Component, multiply};
 use crate::error::{Error, Result};
-use crate::export::Atlas;
-use crate::export::manifest::{Manifest, Table};
-use crate::points::Point;
-use crate::table::{EvenCosine, Texel, WaterAxes, texel};
+use crate::files::Atlas;
+use crate::files::manifest::{Manifest, Table};
+use crate::geometry::Point;
+use crate::mapping::{EvenCosine, Texel, WaterAxes, texel};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::path::Path;

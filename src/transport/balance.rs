@@ -1,9 +1,10 @@
 //! Energy balance of a solved planet: what comes in, goes out and stays.
 
 use super::fill::{Painter, RayLight, SunPairs, Wanted};
-use super::quadrature::{directions, gauss_legendre};
 use super::solve::{Batch, Solution, lowest_sun};
-use crate::lanes::Lanes;
+use crate::geometry::directions;
+use crate::machine::lanes::Lanes;
+use crate::math::quadrature::gauss_legendre;
 use crate::medium::Medium;
 use std::f64::consts::PI;
 

@@ -13,7 +13,7 @@ use super::levels::Levels;
 use super::moments::{Basis, MOST_DEGREE, MOST_TERMS};
 use super::rays::Sample;
 use super::refined::RefinedAxis;
-use crate::lanes::Lanes;
+use crate::machine::lanes::Lanes;
 
 /// Turns between which samples are interpolated: doubling from the first one to steps of the last, rad. The sun's
 /// height is interpolated over steps of some thousandths of a cosine too, and rays are sampled every 0.013.
@@ -201,7 +201,7 @@ pub fn products(
     out: &mut Vec<Lanes>,
 ) {
     // By itself, so that it is small enough for the compiler to work on as a whole.
-    crate::isa::run(
+    crate::machine::isa::run(
         #[inline(always)]
         || sum_products(rays, state, suns, basis, degrees, out),
     )

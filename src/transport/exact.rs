@@ -8,10 +8,10 @@ use super::kernels::azimuth_factor;
 use super::levels::locate;
 use super::optics::Optics;
 use super::path::LONGEST_ARC;
-use super::quadrature::horizon_cosine;
 use super::solve::{Batch, Solution};
-use super::view::View;
-use crate::lanes::{Lanes, WIDTH};
+use crate::geometry::horizon_cosine;
+use crate::geometry::view::View;
+use crate::machine::lanes::{Lanes, WIDTH};
 use std::f64::consts::{FRAC_1_PI, PI};
 
 /// The light of one ray, by where it was last scattered, per unit solar irradiance, 1/sr.

@@ -4,8 +4,8 @@ use super::bundles::turns;
 use super::levels::Levels;
 use super::operator::is_tall;
 use super::path::LONGEST_ARC;
-use super::quadrature::{Direction, directions};
 use super::solve::Resolution;
+use crate::geometry::{Direction, directions};
 use crate::medium::Medium;
 
 /// Sums over all rays of a solve.

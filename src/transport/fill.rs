@@ -11,7 +11,7 @@ use super::rays::{Attenuation, Hit, Sample};
 use super::refined::RefinedAxis;
 use super::solve::{Batch, Solution};
 use super::state::source_factors;
-use crate::lanes::{Lanes, WIDTH};
+use crate::machine::lanes::{Lanes, WIDTH};
 use std::f64::consts::FRAC_1_PI;
 
 pub use super::azimuth::Pairs as SunPairs;
@@ -110,7 +110,7 @@ impl<'a> Painter<'a> {
         let shells = &self.solution.geometry.shells;
         let ground = shells.edges[0];
         let b2: Vec<f64> = mus.iter().map(|mu| r * r * (1.0 - mu * mu)).collect();
-        let columns = crate::isa::run(
+        let columns = crate::machine::isa::run(
             #[inline(always)]
             || {
                 if to_ground {
@@ -148,7 +148,7 @@ impl<'a> Painter<'a> {
             values.clear();
             values.resize(count, Lanes::ZERO);
         }
-        crate::isa::run(
+        crate::machine::isa::run(
             #[inline(always)]
             || {
                 let attenuation = Attenuation::new(&path, &self.batch.optics.extinction);

@@ -26,7 +26,7 @@
 //! counted one by one. f is 0 then, and e^(τ χ_l) is cut off after τ², the third order:
 //!   D_l = 0 for l ≤ L,   D_l = τ χ_l² + ½ τ² χ_l³ for l > L.
 
-use crate::lanes::{Lanes, WIDTH};
+use crate::machine::lanes::{Lanes, WIDTH};
 use crate::medium::PhaseFunction;
 use std::f64::consts::PI;
 

@@ -7,11 +7,11 @@ use super::levels::{LevelCounts, Levels};
 use super::moments::Basis;
 use super::operator::{Geometry, Operator};
 use super::optics::Optics;
-use super::quadrature::gauss_legendre;
 use super::rays::Attenuation;
 use super::state::State;
 use super::sunlight::{SunColumns, Sunlight};
-use crate::lanes::Lanes;
+use crate::machine::lanes::Lanes;
+use crate::math::quadrature::gauss_legendre;
 use crate::medium::{Constituent, DensityProfile, Medium, PhaseFunction, Role};
 use std::f64::consts::PI;
 

@@ -10,7 +10,7 @@ use super::azimuth::{CHUNK, PairChunk, Pairs, Places, SunAxis};
 use super::moments::{Basis, MOST_DEGREE, MOST_TERMS};
 use super::rays::Sample;
 use super::refined::RefinedAxis;
-use crate::lanes::Lanes;
+use crate::machine::lanes::Lanes;
 
 pub use single::{SingleGroup, single};
 

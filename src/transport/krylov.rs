@@ -10,7 +10,7 @@ use super::operator::Operator;
 use super::precondition::Preconditioner;
 use super::solve::{DARK, Report, largest_change, largest_mean, worst};
 use super::state::State;
-use crate::lanes::{Lanes, WIDTH};
+use crate::machine::lanes::{Lanes, WIDTH};
 use rayon::prelude::*;
 
 /// Applications after which a solution that has not converged is left as it is; the residual tells.

@@ -25,14 +25,12 @@ mod operator;
 mod optics;
 mod path;
 mod precondition;
-pub(crate) mod quadrature;
 mod rays;
 mod refined;
 pub mod slab;
 pub mod solve;
 mod state;
 mod sunlight;
-pub mod view;
 
 pub use optics::PhaseLanes as Phase;
 

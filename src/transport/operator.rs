@@ -8,12 +8,12 @@ use super::levels::Levels;
 use super::moments::Basis;
 use super::optics::Optics;
 use super::path::Path;
-use super::quadrature::{Direction, directions};
 use super::rays::{Attenuation, Hit, Ray, Sample};
 use super::refined::RefinedAxis;
 use super::state::{State, source_factors};
 use super::sunlight::Sunlight;
-use crate::lanes::Lanes;
+use crate::geometry::{Direction, directions};
+use crate::machine::lanes::Lanes;
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_1_PI, PI};
 use std::ops::Range;
@@ -102,7 +102,7 @@ impl<'a> Operator<'a> {
             .par_iter()
             .map(|g| {
                 let build = |(_, path): &(Direction, Path)| {
-                    crate::isa::run(
+                    crate::machine::isa::run(
                         #[inline(always)]
                         || Ray::new(path, levels, &optics.extinction),
                     )
@@ -164,7 +164,7 @@ impl<'a> Operator<'a> {
                     let mut flux = vec![Lanes::ZERO; if level == 0 { state.suns } else { 0 }];
                     for (j, (d, _)) in self.geometry.gathers[level].directions.iter().enumerate() {
                         out.fill(Lanes::ZERO);
-                        crate::isa::run(
+                        crate::machine::isa::run(
                             #[inline(always)]
                             || {
                                 radiance(level, j, room, out);

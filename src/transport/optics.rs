@@ -2,7 +2,7 @@
 
 use super::column::Shells;
 use super::forward::{ForwardPeak, unscattered};
-use crate::lanes::{Lanes, WIDTH};
+use crate::machine::lanes::{Lanes, WIDTH};
 use crate::medium::{Medium, PhaseFunction};
 use std::f64::consts::PI;
 

@@ -2,7 +2,7 @@
 
 use super::column::Shells;
 use super::levels::{Levels, locate};
-use crate::lanes::Lanes;
+use crate::machine::lanes::Lanes;
 
 /// Longest arc between two samples of a ray, rad, so that the sun's height changes little between them.
 pub const LONGEST_ARC: f64 = 0.013;

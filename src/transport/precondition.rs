@@ -3,7 +3,7 @@
 
 use super::operator::Operator;
 use super::state::{State, source_factors};
-use crate::lanes::{Lanes, WIDTH};
+use crate::machine::lanes::{Lanes, WIDTH};
 use std::f64::consts::{FRAC_1_PI, PI};
 
 /// The lowest degrees of the azimuthal mean that take part; the rest is left to the iteration.
@@ -96,7 +96,7 @@ impl Preconditioner {
                 }
                 let factor = row[k] * inverse;
                 row[k] = factor;
-                crate::isa::run(
+                crate::machine::isa::run(
                     #[inline(always)]
                     || {
                         for (r, p) in row[k + 1..].iter_mut().zip(&pivot_row[k + 1..]) {
@@ -120,7 +120,7 @@ impl Preconditioner {
                 }
             }
             x[size - 1] = residual.ground[sun];
-            crate::isa::run(
+            crate::machine::isa::run(
                 #[inline(always)]
                 || self.substitute(&mut x),
             );

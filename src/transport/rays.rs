@@ -2,7 +2,7 @@
 
 use super::levels::{Levels, locate};
 use super::path::{Path, Stop};
-use crate::lanes::{Lanes, WIDTH};
+use crate::machine::lanes::{Lanes, WIDTH};
 
 /// A sampling point of a ray, as the kernels see it.
 #[derive(Clone, Copy, Debug)]
@@ -169,7 +169,7 @@ fn inverse(v: Lanes) -> Lanes {
 pub fn segment_weights(depth: Lanes) -> (Lanes, Lanes, Lanes) {
     let through = (depth * -1.0).exp();
     let (mut near, mut far) = (Lanes::ZERO, Lanes::ZERO);
-    for i in 0..crate::lanes::WIDTH {
+    for i in 0..crate::machine::lanes::WIDTH {
         let (d, e) = (depth[i], through[i]);
         let small_far = d
             * (1.0 / 2.0

@@ -2,7 +2,7 @@
 
 use super::azimuth::SunAxis;
 use super::kernels::Field;
-use crate::lanes::Lanes;
+use crate::machine::lanes::Lanes;
 
 /// Refined fields of so few terms stay in the processor's caches.
 const FEW_TERMS: usize = 8;

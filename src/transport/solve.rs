@@ -11,7 +11,7 @@ use super::operator::{Geometry, Operator};
 use super::optics::Optics;
 use super::state::State;
 use super::sunlight::{SunColumns, Sunlight};
-use crate::lanes::{Lanes, WIDTH};
+use crate::machine::lanes::{Lanes, WIDTH};
 use crate::medium::{Constituent, Medium};
 
 /// Which orders of scattering are summed. A reflection by the ground counts as one.

@@ -5,7 +5,7 @@ use super::kernels::Field;
 use super::levels::Levels;
 use super::moments::Basis;
 use super::optics::Optics;
-use crate::lanes::Lanes;
+use crate::machine::lanes::Lanes;
 use std::f64::consts::PI;
 
 /// Moments I_lm / s^min(m,2) as `[level][sun node][term]`, and irradiances as `[sun node]`.

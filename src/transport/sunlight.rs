@@ -4,8 +4,8 @@ use super::azimuth::{CHUNK, Places, node_and_place};
 use super::column::Shells;
 use super::kernels::largest;
 use super::levels::Levels;
-use super::quadrature::horizon_cosine;
-use crate::lanes::Lanes;
+use crate::geometry::horizon_cosine;
+use crate::machine::lanes::Lanes;
 
 /// Transmittance from each fine level to the top of the atmosphere, per wavelength, against
 /// d(mu) = −r mu + √(r² mu² + r_top² − r²), even in d between straight up and the ground's edge (the distance
@@ -62,7 +62,7 @@ impl SunColumns {
         let rows = columns.par_chunks_mut(per_level.max(1)).enumerate();
         let mut ends: Vec<End> = rows
             .map(|(i, out)| {
-                crate::isa::run(
+                crate::machine::isa::run(
                     #[inline(always)]
                     || lit_columns(shells, i, nodes, least, out),
                 )
@@ -146,7 +146,7 @@ impl Sunlight {
         let count = extinction.len();
         let mut values = vec![Lanes::ZERO; levels.fine.len() * nodes];
         values.par_chunks_mut(nodes).enumerate().for_each(|(i, out)| {
-            crate::isa::run(
+            crate::machine::isa::run(
                 #[inline(always)]
                 || {
                     for (n, value) in out.iter_mut().enumerate() {

@@ -5,8 +5,8 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use tempfile::{TempDir, tempdir};
-use tyndall::export::interrupt::handle_interrupts;
-use tyndall::export::staging::Staging;
+use tyndall::files::interrupt::handle_interrupts;
+use tyndall::files::staging::Staging;
 
 /// A bake of two files, both holding `text`.
 pub fn bake(target: &Path, text: &str) -> tyndall::Result<()> {

@@ -6,10 +6,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::{TempDir, tempdir};
 use tyndall::commands::verify::{Args, differences, run};
-use tyndall::export::exr::to_exr_bytes;
-use tyndall::export::manifest::*;
-use tyndall::export::staging::Staging;
-use tyndall::export::{Atlas, Samples};
+use tyndall::files::exr::to_exr_bytes;
+use tyndall::files::manifest::*;
+use tyndall::files::staging::Staging;
+use tyndall::files::{Atlas, Samples};
 
 /// A table of 3 × 2 × 4 texels, in the file `phobos/scattering.exr` of `staging`.
 fn table(staging: &Staging) -> Table {
@@ -231,7 +231,7 @@ fn files_of_others_are_no_difference() {
         fs::write(bake.join(file), "mine").unwrap();
     }
     assert_eq!(differences(&bake, |_| None).unwrap(), []);
-    let told = tyndall::export::foreign::foreign(&bake);
+    let told = tyndall::files::foreign::foreign(&bake);
     assert_eq!(told, [".godot/uid_cache.bin", "notes.txt", "phobos/scattering.exr.meta"].map(PathBuf::from));
     run(&Args { bake: bake.join(MANIFEST), json: true }).unwrap();
 }

@@ -2,7 +2,7 @@
 
 use super::worlds::{COARSE, light, point};
 use crate::common::oracle_medium;
-use tyndall::isa::Isa;
+use tyndall::machine::isa::Isa;
 use tyndall::transport::solve::{Orders, Solution};
 
 /// Every number of a solution and of some views, as bits.

@@ -4,15 +4,15 @@ use std::path::Path;
 use tyndall::bake::bake;
 use tyndall::bake::compact::Sizes;
 use tyndall::bake::settings::{Layout, Settings};
-use tyndall::export::exr::from_exr_bytes;
+use tyndall::files::exr::from_exr_bytes;
+use tyndall::geometry::Point;
+use tyndall::geometry::view::View;
 use tyndall::medium::DensityProfile;
-use tyndall::points::Point;
 use tyndall::preset::{self, Planet};
 use tyndall::quality::Distribution;
 use tyndall::sky::{AerosolPhase, Channels, Component, Sky};
 use tyndall::spectrum::grid;
 use tyndall::transport::solve::{Orders, Resolution, Solution};
-use tyndall::transport::view::View;
 
 /// A cloud from 20 to 30 km, thin enough for the sun to be seen through, in the air of `earth-paper`, in tables whose
 /// altitudes lie at 19, 26 and 35 km there. From 27 to 29 km rays upwards cross cloud, those of the next altitude do not;

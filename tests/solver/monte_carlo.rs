@@ -1,8 +1,8 @@
 //! The solver against the Monte Carlo reference, which shares the medium with it and nothing else.
 
 use super::worlds::{CONVERGED, point, total};
+use tyndall::geometry::Point;
 use tyndall::medium::Medium;
-use tyndall::points::Point;
 use tyndall::preset;
 use tyndall::reference::{Estimate, Settings, Tracer};
 use tyndall::transport::solve::{Orders, Resolution, Solution};

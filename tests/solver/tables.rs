@@ -4,13 +4,13 @@ use serde_json::Value;
 use std::path::Path;
 use tyndall::bake::bake;
 use tyndall::bake::settings::Settings;
-use tyndall::points::Point;
+use tyndall::geometry::Point;
+use tyndall::geometry::view::View;
 use tyndall::preset;
 use tyndall::quality::{Distribution, REGIONS, relative_errors, views};
 use tyndall::sky::{AerosolPhase, Component, Sky};
 use tyndall::spectrum::grid;
 use tyndall::transport::solve::{Orders, Resolution, Solution};
-use tyndall::transport::view::View;
 
 /// Median and 95th percentile of relative radiance that the compact layout is made for, by region of the report.
 /// Table steps are a few per cent of a radiance, cubic nowhere, so an error of half a per cent by day is what the

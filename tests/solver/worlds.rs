@@ -1,11 +1,11 @@
 //! Planets, resolutions and short ways to ask the solver, for the tests beside.
 
 pub use crate::constituents::{RAYLEIGH, constituent, exponential};
+use tyndall::geometry::Point;
+use tyndall::geometry::view::View;
 use tyndall::medium::{Constituent, Medium, PhaseFunction, Role};
-use tyndall::points::Point;
 use tyndall::transport::exact::Radiance;
 use tyndall::transport::solve::{LevelCounts, Orders, Resolution, Solution};
-use tyndall::transport::view::View;
 
 pub const CONVERGED: Orders = Orders::Converged { tolerance: 1e-4 };
 

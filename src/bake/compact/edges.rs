@@ -4,7 +4,7 @@
 //! and the light of the texel below, interpolated logarithms would lose nearly all of the light. So the first dark texel
 //! holds what makes the interpolation right half-way to it or, where it is dark there already, a quarter of the way.
 
-use crate::table::Elek2010;
+use crate::mapping::Elek2010;
 use crate::transport::fill::RayLight;
 use rayon::prelude::*;
 

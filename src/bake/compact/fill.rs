@@ -2,8 +2,8 @@
 
 use super::edges::{self, Ray};
 use crate::bake::palette::Palette;
-use crate::lanes::Lanes;
-use crate::table::Elek2010;
+use crate::machine::lanes::Lanes;
+use crate::mapping::Elek2010;
 use crate::transport::Phase;
 use crate::transport::fill::{Painter, RayLight, SunPairs, Wanted};
 use crate::transport::solve::Solution;

@@ -1,7 +1,7 @@
 //! Where the altitude axis of thick air is finer: in the upper side of its cloud.
 
+use crate::mapping::{Bends, Elek2010, Layer, SunCurve, Window};
 use crate::medium::Medium;
-use crate::table::{Bends, Elek2010, Layer, SunCurve, Window};
 
 /// Vertical optical depth, the median over wavelengths, up to which axes are left alone.
 const THIN: f64 = 4.0;

@@ -2,12 +2,12 @@
 
 use crate::bake::elek2010::sums;
 use crate::bake::palette::Palette;
-use crate::lanes::Lanes;
+use crate::geometry::directions;
+use crate::machine::lanes::Lanes;
+use crate::mapping::Bruneton;
 use crate::medium::{Medium, Role};
-use crate::table::Bruneton;
 use crate::transport::Phase;
 use crate::transport::fill::{Painter, RayLight, SunPairs, Wanted};
-use crate::transport::quadrature::directions;
 use crate::transport::solve::{Batch, Solution};
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -75,7 +75,7 @@ impl Look {
     ) {
         let phases: Vec<&Phase> = self.groups.iter().map(|g| &batch.optics.phase[g[0]]).collect();
         let sine = (1.0 - mu * mu).max(0.0).sqrt();
-        crate::isa::run(
+        crate::machine::isa::run(
             #[inline(always)]
             || {
                 for (p, texel) in out.iter_mut().enumerate() {

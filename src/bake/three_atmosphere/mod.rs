@@ -15,9 +15,9 @@ mod tables;
 use super::palette::Palette;
 use super::tables::Baked;
 use crate::error::Result;
+use crate::mapping::Bruneton;
 use crate::medium::Medium;
 use crate::preset::Planet;
-use crate::table::Bruneton;
 use crate::transport::solve::Solution;
 use std::collections::BTreeMap;
 

@@ -4,10 +4,10 @@
 use super::LUMINANCE_UNIT;
 use crate::bake::palette::Palette;
 use crate::error::{Error, Result};
+use crate::mapping::Bruneton;
 use crate::medium::{Medium, Role};
 use crate::preset::Planet;
 use crate::spectrum::{multiply, weighted};
-use crate::table::Bruneton;
 use serde_json::{Value, json};
 
 /// Spectra as the package sees them: weighted by the star's light for each component of RGB.

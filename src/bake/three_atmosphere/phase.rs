@@ -1,8 +1,8 @@
 //! Phase functions that the package's shaders put on, and the g that suits a preset's aerosols best.
 
 use crate::bake::palette::Palette;
+use crate::mapping::Bruneton;
 use crate::medium::{Medium, PhaseFunction, Role};
-use crate::table::Bruneton;
 use std::f64::consts::PI;
 
 /// The package's Rayleigh phase function, 1/sr.
@@ -36,7 +36,7 @@ pub fn best_g(medium: &Medium, palette: &Palette, mapping: &Bruneton) -> f64 {
     let error = |g: f64| -> f64 {
         let ratio: Vec<f64> = nodes.iter().zip(&stored).map(|(&nu, p)| p / cornette_shanks(g, nu)).collect();
         let relative = |&(nu, p): &(f64, f64)| {
-            let (low, fraction) = crate::table::texel(0.5 * (1.0 + nu), nodes.len());
+            let (low, fraction) = crate::mapping::texel(0.5 * (1.0 + nu), nodes.len());
             let between = ratio[low] + fraction * (ratio[low + 1] - ratio[low]);
             (between * cornette_shanks(g, nu) / p - 1.0) * (between * cornette_shanks(g, nu) / p - 1.0)
         };

@@ -5,8 +5,8 @@ use super::{LAYOUT, LUMINANCE_UNIT, cornette_shanks, rayleigh};
 use crate::bake::elek2010::power_of_two;
 use crate::bake::palette::Palette;
 use crate::bake::tables::{Baked, Channel, axis};
-use crate::export::manifest::{Axis, Encoding};
-use crate::table::Bruneton;
+use crate::files::manifest::{Axis, Encoding};
+use crate::mapping::Bruneton;
 use crate::transport::solve::Solution;
 use rayon::prelude::*;
 

@@ -3,9 +3,9 @@
 use super::shared::{self, baked, channels_of};
 use super::{LAYOUT, Waters};
 use crate::bake::tables::{Baked, Channel};
+use crate::mapping::{EvenCosine, WaterAxes};
 use crate::medium::WaterMedium;
 use crate::preset::Water;
-use crate::table::{EvenCosine, WaterAxes};
 use crate::transport::slab::{Angles, Dome, Layer, Slab};
 use rayon::prelude::*;
 
@@ -144,7 +144,7 @@ pub(super) fn tables(water: &Water, media: &WaterMedium, slabs: &[Slab], waters:
     ]
 }
 
-pub(super) fn plain(formula: &crate::table::AxisFormula) -> crate::export::manifest::Axis {
+pub(super) fn plain(formula: &crate::mapping::AxisFormula) -> crate::files::manifest::Axis {
     let mut axis = crate::bake::tables::axis(formula);
     if formula.name == "depth" {
         axis.unit = "m".into();

@@ -5,10 +5,10 @@ use super::LAYOUT;
 use super::skylight::Split;
 use crate::bake::palette::Palette;
 use crate::bake::tables::{Baked, Channel};
-use crate::export::manifest::{Axis, Encoding};
+use crate::files::manifest::{Axis, Encoding};
+use crate::mapping::EvenCosine;
 use crate::medium::Medium;
 use crate::preset::Water;
-use crate::table::EvenCosine;
 use crate::transport::slab::{Surface, fresnel, lazanyi_szirmay_kalos};
 use crate::transport::solve::{Solution, lowest_sun};
 

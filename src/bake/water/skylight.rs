@@ -1,10 +1,10 @@
 //! The light of a planet's own sky on a water surface, from above.
 
+use crate::geometry::Point;
+use crate::geometry::view::View;
 use crate::medium::Medium;
-use crate::points::Point;
 use crate::transport::slab::{Dome, fresnel, gauss_legendre};
 use crate::transport::solve::{Solution, lowest_sun};
-use crate::transport::view::View;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 

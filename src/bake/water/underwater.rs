@@ -4,10 +4,10 @@ use super::LAYOUT;
 use super::fill::{LEAST_COSINE, SUN, axes, plain};
 use super::shared::{self, baked, channels_of};
 use crate::bake::tables::Baked;
-use crate::export::manifest::Axis;
+use crate::files::manifest::Axis;
+use crate::mapping::EvenCosine;
 use crate::medium::WaterMedium;
 use crate::preset::Water;
-use crate::table::EvenCosine;
 use crate::transport::slab::{Angles, Dome, Layer, Slab, WaterOrders};
 use rayon::prelude::*;
 

@@ -3,8 +3,8 @@
 use crate::sea::Water;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use tyndall::export::manifest::{Manifest, Table};
-use tyndall::export::{Atlas, Samples};
+use tyndall::files::manifest::{Manifest, Table};
+use tyndall::files::{Atlas, Samples};
 use tyndall::sky::{self, Sky, shader};
 use tyndall::{Error, Result};
 

@@ -1,7 +1,7 @@
 //! Where the observer stands and looks, and where the star is.
 
 use glam::{DVec3, dvec3};
-use tyndall::points::Point;
+use tyndall::geometry::Point;
 
 /// How the picture is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]

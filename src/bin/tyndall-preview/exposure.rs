@@ -3,7 +3,7 @@
 use crate::bake::Bake;
 use crate::camera::Camera;
 use glam::{DMat3, DVec3};
-use tyndall::points::Point;
+use tyndall::geometry::Point;
 use tyndall::sky::Component;
 use tyndall::sky::water::WaterView;
 

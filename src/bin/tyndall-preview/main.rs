@@ -28,7 +28,8 @@ use bake::Bake;
 use clap::Parser;
 use gpu::Gpu;
 use options::Options;
-use tyndall::{Error, output};
+use tyndall::Error;
+use tyndall::machine::output;
 
 fn main() -> std::process::ExitCode {
     hush();

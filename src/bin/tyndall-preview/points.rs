@@ -8,8 +8,9 @@ use crate::sea::Sea;
 use std::io::Write;
 use std::path::Path;
 use tyndall::Result;
-use tyndall::output::stream;
-use tyndall::points::{Answer, Point, read_points, write_answers};
+use tyndall::files::points::{Answer, read_points, write_answers};
+use tyndall::geometry::Point;
+use tyndall::machine::output::stream;
 use tyndall::sky::Channels;
 use tyndall::sky::water::WaterView;
 

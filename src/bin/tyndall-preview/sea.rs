@@ -4,7 +4,7 @@ use crate::bake::{Bake, Texels};
 use crate::gpu::Gpu;
 use crate::resources::{texture, texture_entry, uniform_entry};
 use bytemuck::{Pod, Zeroable};
-use tyndall::export::manifest::Manifest;
+use tyndall::files::manifest::Manifest;
 use tyndall::sky::shader::{TableConstants, four, rgb_rows};
 use tyndall::sky::{self, water};
 use tyndall::{Error, Result};
@@ -51,7 +51,7 @@ impl Water {
         // Of the layout, what this water needs: there may be sixteen, and tables for observers under water.
         let names = TABLES.map(|table| table.replace("{}", name));
         let needed =
-            |t: &&tyndall::export::manifest::Table| t.layout == water::LAYOUT && names.contains(&t.name);
+            |t: &&tyndall::files::manifest::Table| t.layout == water::LAYOUT && names.contains(&t.name);
         let tables = bake.manifest.tables.iter().filter(needed).cloned().collect();
         let manifest = Manifest { tables, ..bake.manifest.clone() };
         let pictures = sky::pictures(&bake.folder, &manifest, water::LAYOUT)?;

@@ -2,8 +2,8 @@
 
 use super::Args;
 use crate::error::Result;
-use crate::export::manifest::MANIFEST;
-use crate::export::whole;
+use crate::files::manifest::MANIFEST;
+use crate::files::whole;
 use crate::preset::{self, Planet};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

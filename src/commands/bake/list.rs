@@ -3,7 +3,8 @@
 use super::Args;
 use super::progress::Progress;
 use crate::error::{Error, Result};
-use crate::input::{self, MOST_CSV};
+use crate::files::bounded_read;
+use crate::files::bounded_read::MOST_CSV;
 use crate::preset::{self, Planet};
 use std::path::Path;
 
@@ -60,7 +61,7 @@ pub fn refuse_unknown(asked: &[String], planets: &[Result<Planet>], progress: &P
 }
 
 fn read(file: &Path) -> Result<Vec<String>> {
-    parse(file, &input::text(file, MOST_CSV)?)
+    parse(file, &bounded_read::text(file, MOST_CSV)?)
 }
 
 /// The presets that the text of a list names, a line each; `#` begins a comment. A path is from the folder of the list

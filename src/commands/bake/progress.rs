@@ -1,8 +1,8 @@
 //! How bakes get on: a bar each on a terminal, a line at begin and end elsewhere; and the times of their stages.
 
 use crate::bake::settings::{Layout, Settings};
-use crate::clock::cpu_time;
-use crate::output;
+use crate::machine::cpu_time::cpu_time;
+use crate::machine::output;
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use std::time::{Duration, Instant};
 

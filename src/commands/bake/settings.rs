@@ -4,16 +4,16 @@ use super::super::machine::wavelengths;
 use super::Args;
 use super::progress::Progress;
 use super::window::{Sized, fitted};
+use crate::algorithm1::Gather;
 use crate::bake::settings::{Layout, Settings, Solver, Storage};
 use crate::bake::water::Waters;
 use crate::error::{Error, Result};
-use crate::export::container::Container;
-use crate::methods::literal::Gather;
-use crate::names;
+use crate::files::container::Container;
+use crate::mapping::{Views, Window};
 use crate::plan::{Effort, plan};
+use crate::preset::names;
 use crate::preset::{self, Planet, Scene, Tolerance};
 use crate::spectrum::Rgb;
-use crate::table::{Views, Window};
 use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
 
@@ -50,8 +50,9 @@ pub fn planned(
         scene.elevations[0] = 0.0;
     }
     let mut talk = |text: &str| progress.say(&format!("{}: {text}", planet.name));
-    let plan =
-        plan(planet, &scene, &Effort::default(), &mut talk, &|| crate::clock::cpu_time().as_secs_f64())?;
+    let plan = plan(planet, &scene, &Effort::default(), &mut talk, &|| {
+        crate::machine::cpu_time::cpu_time().as_secs_f64()
+    })?;
     if !plan.unmet.is_empty() {
         let reason = plan.unmet.join("; ");
         return Err(Error::Check(format!("{}: no model holds: {reason}", planet.name)));

@@ -3,9 +3,9 @@
 use crate::bake::compact::{self, Kind};
 use crate::bake::elek2010;
 use crate::bake::settings::Settings;
+use crate::mapping::{Elek2010, Views};
 use crate::medium::Medium;
 use crate::preset::{Metric, Tolerance};
-use crate::table::{Elek2010, Views};
 
 /// `2m`, `0..200m`, `300m..12km`: metres; the first number has the unit of the last where it has none.
 pub fn altitudes(text: &str) -> Result<[f64; 2], String> {

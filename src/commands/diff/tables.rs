@@ -2,8 +2,8 @@
 
 use super::{Bake, TableDifference, Texels};
 use crate::error::Result;
-use crate::export::Atlas;
-use crate::export::manifest::Table;
+use crate::files::Atlas;
+use crate::files::manifest::Table;
 use crate::quality::Distribution;
 use crate::sky::picture;
 use rayon::prelude::*;

@@ -4,7 +4,7 @@ use super::{Bake, ViewDifference};
 use crate::bake::report::DARK;
 use crate::bake::settings::Layout;
 use crate::error::{Error, Result};
-use crate::points::Point;
+use crate::geometry::Point;
 use crate::quality::{Distribution, REGIONS, Region, views};
 use crate::sky::{AerosolPhase, Channels, Component, Sky};
 use crate::spectrum::{delta_e_2000_scaled, invert, multiply};

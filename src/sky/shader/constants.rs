@@ -1,7 +1,7 @@
 //! What the look-ups need of `bake.json`, in the form that `shell.wgsl` declares, as constants of the shader: compilers
 //! then drop what a bake does not have, and a pixel loads nothing of it.
 
-use crate::export::manifest::{EncodingKind, Manifest, Table};
+use crate::files::manifest::{EncodingKind, Manifest, Table};
 
 /// `Table` of `shell.wgsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

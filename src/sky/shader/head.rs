@@ -2,7 +2,7 @@
 
 use super::{Bound, Language, is_volume};
 use crate::error::Line;
-use crate::export::manifest::Manifest;
+use crate::files::manifest::Manifest;
 
 const WGSL: &str = "
 The numbers are bindings of group 0; the last is a sampler, linear along all axes and clamped to the edge.

@@ -8,7 +8,7 @@ mod translate;
 pub use constants::{Constants, TableConstants, four, main, rgb_rows, singles};
 
 use crate::error::{Error, Result};
-use crate::export::manifest::{Manifest, Table};
+use crate::files::manifest::{Manifest, Table};
 use std::path::Path;
 
 pub const SHELL: &str = include_str!("../wgsl/shell.wgsl");

@@ -1,7 +1,7 @@
 //! Light scattered once.
 
 use super::{largest, least_weight};
-use crate::lanes::Lanes;
+use crate::machine::lanes::Lanes;
 use crate::transport::azimuth::{CHUNK, Pairs, Places};
 use crate::transport::rays::Sample;
 use crate::transport::sunlight::Sunlight;

@@ -24,7 +24,7 @@ mod orders;
 mod streams;
 mod surface;
 
-pub use super::quadrature::gauss_legendre;
+pub use crate::math::quadrature::gauss_legendre;
 pub use azimuth::{Azimuths, azimuth_half_spread, leaving_at};
 pub use field::{Beam, Field, Layer, Pair, View, seabed_radiance};
 pub use fresnel::{fresnel, lazanyi_szirmay_kalos, refract};

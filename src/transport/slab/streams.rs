@@ -1,6 +1,6 @@
 //! Streams, Legendre polynomials and azimuth means of phase functions.
 
-use crate::transport::quadrature::gauss_legendre;
+use crate::math::quadrature::gauss_legendre;
 
 /// Cosines and weights of the streams of a hemisphere: Gauss–Legendre on (0, critical) and (critical, 1), or on
 /// (0, 1) where there is no critical angle.

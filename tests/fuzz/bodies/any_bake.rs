@@ -10,7 +10,7 @@ use tyndall::Error;
 use tyndall::bake::settings::Layout;
 use tyndall::bake::{Lights, Product, bake_in};
 use tyndall::commands::bake::{Args, settings_of};
-use tyndall::points::Point;
+use tyndall::geometry::Point;
 use tyndall::preset;
 use tyndall::sky::{AerosolPhase, Component};
 

@@ -13,10 +13,10 @@ use tyndall::bake::settings::{Layout, Settings};
 use tyndall::bake::water::Waters;
 use tyndall::bake::{self, Product, inputs};
 use tyndall::commands::{diff, verify};
-use tyndall::export::Atlas;
-use tyndall::export::exr::{from_exr_bytes, to_exr_bytes};
-use tyndall::export::manifest::Manifest;
-use tyndall::points::Point;
+use tyndall::files::Atlas;
+use tyndall::files::exr::{from_exr_bytes, to_exr_bytes};
+use tyndall::files::manifest::Manifest;
+use tyndall::geometry::Point;
 use tyndall::preset::{self, Planet};
 use tyndall::sky::water::{WaterSky, WaterView};
 use tyndall::sky::{AerosolPhase, Component, Sky};
@@ -127,7 +127,7 @@ pub fn skies(bytes: &[u8]) {
             for change in changes.chunks_exact(7) {
                 let at = usize::from(change[1]) | usize::from(change[2]) << 8;
                 let channels = atlas.channels.len();
-                if let tyndall::export::Samples::Float(v) =
+                if let tyndall::files::Samples::Float(v) =
                     &mut atlas.channels[usize::from(change[0]) % channels].samples
                 {
                     let n = v.len();

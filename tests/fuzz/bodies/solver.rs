@@ -3,11 +3,11 @@
 use super::edits::{Base, text};
 use super::{good, refused};
 use std::sync::OnceLock;
+use tyndall::geometry::Point;
+use tyndall::geometry::view::View;
 use tyndall::medium::Medium;
-use tyndall::points::Point;
 use tyndall::preset;
 use tyndall::transport::solve::{Orders, Resolution, Solution};
-use tyndall::transport::view::View;
 
 pub fn solve(bytes: &[u8]) {
     static BASES: OnceLock<Vec<Base>> = OnceLock::new();

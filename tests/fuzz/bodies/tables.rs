@@ -4,7 +4,7 @@ use super::{file, one_line, refused};
 use tyndall::chart::draw::pictures;
 use tyndall::chart::{Measure, mark, parse_csv, to_csv};
 use tyndall::commands::colour_input;
-use tyndall::points::parse_points;
+use tyndall::files::points::parse_points;
 use tyndall::preset;
 
 pub fn points(bytes: &[u8]) {

@@ -1,0 +1,3 @@
+//! Mathematics without physics: quadrature.
+
+pub mod quadrature;
