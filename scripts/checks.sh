@@ -4,7 +4,7 @@
 checks=(
     "Colours against colour-science|validate-colour|--quick"
     "Tables in every container, by readers of others|validate-containers|"
-    "Look-ups in WGSL, GLSL and HLSL against golden vectors|validate-shaders|"
+    "Look-ups in WGSL, GLSL and HLSL against golden vectors|validate-shaders|--quick"
     "Solver against Monte Carlo|study-solver|--quick"
     "Water against PythonicDISORT|validate-water|--quick"
     "Thick air against PythonicDISORT|validate-air|--quick"
