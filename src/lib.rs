@@ -20,10 +20,12 @@
 pub mod algorithm1;
 pub mod bake;
 pub mod chart;
+pub mod colour;
 pub mod commands;
 pub mod error;
 pub mod files;
 pub mod geometry;
+pub mod layout;
 pub mod machine;
 pub mod mapping;
 pub mod math;
@@ -33,7 +35,6 @@ pub mod plan;
 pub mod preset;
 pub mod quality;
 pub mod reference;
-pub mod sky;
 pub mod spectrum;
 pub mod transport;
 

@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::OnceLock;
 use tyndall::bake::bake;
-use tyndall::bake::settings::Settings;
 use tyndall::geometry::view::View;
+use tyndall::layout::settings::Settings;
+use tyndall::layout::sky::{Component, Sky};
 use tyndall::mapping::Views;
 use tyndall::plan::{Effort, Plan, plan};
 use tyndall::preset::{self, Budget, Metric, Planet, Scene, Tolerance};
 use tyndall::quality::{Scope, colour_error};
-use tyndall::sky::{Component, Sky};
 use tyndall::spectrum::{ColourSpace, Reconstruction, multiply};
 use tyndall::transport::solve::{Orders, Resolution, Solution};
 

@@ -1,14 +1,14 @@
 //! The layout three-atmosphere. That its reader understands it is shown by that reader
 //! (`scripts/validate-three-atmosphere`); here, what the tables hold.
 
-use tyndall::bake::settings::{Layout, Settings};
 use tyndall::bake::{Product, bake};
 use tyndall::files::exr::from_exr_bytes;
 use tyndall::geometry::Point;
 use tyndall::geometry::view::View;
-use tyndall::mapping::Bruneton;
+use tyndall::layout::settings::{Layout, Settings};
+use tyndall::layout::sky::{AerosolPhase, Component, Sky};
+use tyndall::layout::three_atmosphere::Bruneton;
 use tyndall::preset::{self, Planet};
-use tyndall::sky::{AerosolPhase, Component, Sky};
 use tyndall::transport::solve::{Orders, Resolution, Solution};
 
 const FOLDER: &str = "in memory";

@@ -1,8 +1,9 @@
 //! Sheets of the air that the altitudes of a bake's tables are too far apart for.
 
-use super::settings::{Layout, Settings};
-use super::{compact, elek2010};
-use crate::mapping::{Bruneton, Elek2010};
+use crate::layout::settings::{Layout, Settings};
+use crate::layout::three_atmosphere::Bruneton;
+use crate::layout::{compact, elek2010};
+use crate::mapping::Elek2010;
 use crate::medium::{Medium, Sheet};
 
 /// A warning for each sheet that is thinner than the distance of the altitudes about it in a layout that is baked.

@@ -1,12 +1,12 @@
 //! What `bake.json` says before anything is measured: settings, colour, constants, tables.
 
-use super::compact;
 use super::files::Files;
-use super::palette::Palette;
-use super::settings::Settings;
 use super::versions;
-use super::water::WaterTables;
+use crate::colour::weights::Palette;
 use crate::files::manifest::{Adapted, Colour, GridKind, Manifest, Preset, SCHEMA_VERSION, Wavelengths};
+use crate::layout::compact;
+use crate::layout::settings::Settings;
+use crate::layout::water::WaterTables;
 use crate::medium::{Medium, Role};
 use crate::preset::{Planet, Water};
 use crate::spectrum::{Adaptation, chromaticity};

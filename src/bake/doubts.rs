@@ -1,8 +1,8 @@
 //! What the quality report says that a user must hear: tables or a medium that miss the planet's own day, and colours
 //! that miss its own.
 
-use super::palette::{ColourError, Palette};
-use super::settings::Layout;
+use crate::colour::weights::{ColourError, Palette};
+use crate::layout::settings::Layout;
 use serde_json::{Map, Value};
 
 /// Error of the tables of a layout on 95 % of views by day, or of those near the horizon by day, above which the bake warns: five times that of the paper's.

@@ -1,10 +1,10 @@
 //! The files of a bake: tables encoded and hashed, and counts of what halves cannot hold well.
 
-use super::settings::Storage;
-use super::tables::Baked;
 use crate::error::Result;
 use crate::files::manifest::{Encoding, EncodingKind, InContainer, OtherFile, Table};
 use crate::files::{Atlas, Samples, exr};
+use crate::layout::settings::Storage;
+use crate::layout::table_data::Baked;
 use half::f16;
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};

@@ -1,10 +1,10 @@
 //! What a bake is made from: as it would be made now, and as a manifest says that it was made. Where the two are
 //! equal, so are the bytes.
 
-use super::settings::Settings;
 use super::versions;
 use crate::files::changes::{Change, changes};
 use crate::files::manifest::{Manifest, Tool};
+use crate::layout::settings::Settings;
 use crate::preset::Planet;
 use serde_json::{Map, Value, json};
 

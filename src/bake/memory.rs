@@ -3,9 +3,9 @@
 //! The large things are counted: states and rays while the solver works, fields and texels while tables are
 //! filled. It is meant to be a little too much rather than too little.
 
-use super::compact::groups;
-use super::settings::{Layout, Settings};
-use crate::mapping::Bruneton;
+use crate::layout::compact::groups;
+use crate::layout::settings::{Layout, Settings};
+use crate::layout::three_atmosphere::Bruneton;
 use crate::medium::{Constituent, Medium};
 use crate::preset::Planet;
 use crate::transport::extent::Extent;

@@ -4,10 +4,10 @@ use crate::error::Result;
 use crate::files::picture::{Exposure, fisheye, from_space};
 use crate::files::sheet::{Panel, contact_sheet};
 use crate::geometry::Point;
+use crate::layout::sky::{Component, Sky};
+use crate::layout::water::lookup::{WaterSky, WaterView};
 use crate::mapping::Window;
 use crate::preset::Planet;
-use crate::sky::water::{WaterSky, WaterView};
-use crate::sky::{Component, Sky};
 
 const SIZE: usize = 144;
 const COLUMNS: usize = 4;

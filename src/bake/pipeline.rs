@@ -3,20 +3,21 @@
 use super::doubts;
 use super::files::Files;
 use super::lights::Lights;
-use super::palette::Palette;
-use super::settings::{Layout, Settings, Solver};
-use super::tables::Baked;
-use super::water::WaterTables;
-use super::{
-    coarse, compact, describe, elek2010, extinction, pictures, report, skies, spectral, three_atmosphere,
-    vectors, water,
-};
+use super::{coarse, describe, pictures, report, vectors};
+use crate::colour::samples as skies;
+use crate::colour::weights::Palette;
 use crate::error::{Error, Result};
 use crate::files::manifest::Manifest;
+use crate::layout::elek2010::spectral;
+use crate::layout::settings::{Layout, Settings, Solver};
+use crate::layout::shader;
+use crate::layout::sky::{AerosolPhase, Sky};
+use crate::layout::table_data::Baked;
+use crate::layout::water::WaterTables;
+use crate::layout::water::lookup::WaterSky;
+use crate::layout::{compact, elek2010, extinction, three_atmosphere, water};
 use crate::medium::Medium;
 use crate::preset::{Planet, Water};
-use crate::sky::water::WaterSky;
-use crate::sky::{AerosolPhase, Sky, shader};
 use crate::spectrum::RANGE;
 use crate::transport::solve::{Orders, Resolution, Solution, worst};
 use serde_json::{Map, Value, json};
@@ -222,7 +223,9 @@ impl<'a> Solved<'a> {
             Solver::Moments => {
                 elek2010::tables(paper, light, palette, settings.elek2010_size, &settings.window)
             }
-            Solver::Literal { .. } => super::literal::tables(paper, light, palette, settings)?,
+            Solver::Literal { .. } => {
+                crate::layout::elek2010::literal::tables(paper, light, palette, settings)?
+            }
         };
         filled.tables.extend(tables);
         let (groups, _) = compact::groups_to_fold(&self.full, &settings.compact.folded);

@@ -2,14 +2,17 @@
 //! ratios of radiance and irradiance, which know neither, so that only numbers of the manifest change.
 
 use super::files::{Content, entry};
-use super::palette::Palette;
-use super::skies::{self, Skies};
-use super::{compact, describe, doubts, pictures, report, versions};
+use super::{describe, doubts, pictures, report, versions};
+use crate::colour::samples as skies;
+use crate::colour::samples::Skies;
+use crate::colour::weights::Palette;
 use crate::error::{Error, Result};
 use crate::files::Atlas;
 use crate::files::manifest::{Manifest, Preset, Tool};
+use crate::layout::compact;
+use crate::layout::shader;
+use crate::layout::sky::Sky;
 use crate::preset::Planet;
-use crate::sky::{Sky, shader};
 use crate::spectrum::{Beholder, OBSERVER_RANGE, Rgb, Spectrum, planck_law};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -68,7 +71,8 @@ pub fn recolour(source: &Source, wanted: &Wanted) -> Result<(Manifest, Vec<Conte
     new.warnings.extend(doubts::colours(&palette));
     let mut made = shader::files(source.folder, &new, compact::LAYOUT)?;
     let sky = Sky::new(source.folder, &new, compact::LAYOUT, source.tables)?;
-    let (picture, errors) = pictures::preview(&sky, &planet, &super::settings::window(&old.settings), &[])?;
+    let (picture, errors) =
+        pictures::preview(&sky, &planet, &crate::layout::settings::window(&old.settings), &[])?;
     if errors > 0 {
         new.warnings.push(format!("preview.png: {errors} pixels that no display can show (in magenta)"));
     }
@@ -107,7 +111,7 @@ fn settings(old: &Manifest, wanted: &Wanted) -> Value {
     let mut settings = old.settings.clone();
     settings["layouts"] = json!([compact::LAYOUT]);
     settings["waters"] = json!([]);
-    settings["white"] = super::settings::white(&wanted.rgb);
+    settings["white"] = crate::layout::settings::white(&wanted.rgb);
     settings["shipped_preset"] = json!(false);
     settings["recoloured"] = json!({ "star_k": wanted.star_k, "observer": wanted.beholder.name() });
     settings

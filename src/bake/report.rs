@@ -1,12 +1,12 @@
 //! The quality report of a bake: its tables against direct integration, and what the solver says of itself.
 
-use super::palette::{ColourError, Palette};
+use crate::colour::weights::Palette;
 use crate::geometry::Point;
 use crate::geometry::view::View;
+use crate::layout::sky::{AerosolPhase, Component, Sky};
 use crate::mapping::Window;
 use crate::medium::Medium;
-use crate::quality::{Distribution, REGIONS, Scope, colour_error, digits, relative_errors, views};
-use crate::sky::{AerosolPhase, Component, Sky};
+use crate::quality::{DARK, Distribution, REGIONS, Scope, colour_error, digits, relative_errors, views};
 use crate::spectrum::{delta_e_2000_scaled, multiply};
 use crate::transport::balance::balance;
 use crate::transport::solve::{Orders, Solution, worst};
@@ -15,8 +15,6 @@ use serde_json::{Map, Value, json};
 
 /// Views a region: enough for a 95th percentile, few enough to take a small share of the bake.
 const VIEWS: usize = 40;
-/// Radiance over solar irradiance below which relative errors mean nothing, 1/sr: far below starlight.
-pub const DARK: f64 = 1e-12;
 
 /// A region's views with their true radiance, per wavelength, 1/sr.
 pub struct Truth {
@@ -115,8 +113,8 @@ pub fn solver(medium: &Medium, solution: &Solution) -> Value {
 /// four wavelengths lose in each region.
 pub fn colours(palette: &Palette, truths: Option<&[Truth]>) -> Value {
     let mut out = json!({
-        "all_wavelengths_delta_e_2000": colour(&palette.error),
-        "four_wavelengths_delta_e_2000": colour(&palette.four_error),
+        "all_wavelengths_delta_e_2000": palette.error.json(),
+        "four_wavelengths_delta_e_2000": palette.four_error.json(),
     });
     if let Some(truths) = truths {
         out["four_wavelengths_by_region"] = four_wavelengths(palette, truths);
@@ -142,10 +140,4 @@ fn four_wavelengths(palette: &Palette, truths: &[Truth]) -> Value {
         out.insert(truth.region.to_string(), pair);
     }
     Value::Object(out)
-}
-
-/// ΔE2000 of a colour fit on skies held out of it; null where there is none to judge by.
-pub fn colour(error: &ColourError) -> Value {
-    let of = |v: f64| if v.is_nan() { Value::Null } else { json!(digits(v)) };
-    json!({ "median": of(error.median), "p95": of(error.p95), "max": of(error.worst) })
 }

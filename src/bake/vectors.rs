@@ -3,10 +3,10 @@
 
 use crate::files::points::COLUMNS;
 use crate::geometry::Point;
+use crate::layout::sky::{AerosolPhase, Channels, Component, Sky};
 use crate::mapping::Window;
 use crate::medium::Medium;
 use crate::quality::{REGIONS, Scope, views};
-use crate::sky::{AerosolPhase, Channels, Component, Sky};
 
 /// Views a region, and number of the sequence that they are of: others than the report's.
 const VIEWS: usize = 12;

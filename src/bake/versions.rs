@@ -1,9 +1,9 @@
 //! By which version of each algorithm a bake is made. A version is raised when bytes that a bake holds change, and only
 //! then (`tests/cli/bytes.rs` holds both), so that a bake of another build is stale when, and only when, its bytes are.
 
-use super::settings::{Layout, Settings};
-use super::{compact, elek2010, three_atmosphere, water};
 use crate::files::manifest::Tool;
+use crate::layout::settings::{Layout, Settings};
+use crate::layout::{compact, elek2010, three_atmosphere, water};
 use crate::transport;
 use std::collections::BTreeMap;
 

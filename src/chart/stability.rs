@@ -7,11 +7,11 @@
 
 use crate::algorithm1::Gather;
 use crate::bake::Lights;
-use crate::bake::compact::Sizes;
-use crate::bake::settings::{Layout, Settings, Solver};
 use crate::error::Result;
 use crate::geometry::Point;
 use crate::geometry::view::View;
+use crate::layout::compact::Sizes;
+use crate::layout::settings::{Layout, Settings, Solver};
 use crate::medium::Role;
 use crate::methods::{
     BakedTables, Elek2009, Family, Method, Nishita, OneilMarch, PreparedSky, Schafhitzel, Storage,
@@ -301,7 +301,7 @@ pub fn awkward_views(planet: &Planet) -> Vec<Point> {
 fn truth(case: &Case, views: &[Point], lights: &Lights) -> Vec<[f64; 3]> {
     let (planet, nm) = (&case.planet, grid(case.wavelengths));
     let medium = planet.medium(&nm);
-    let tolerance = crate::bake::settings::TOLERANCE;
+    let tolerance = crate::layout::settings::TOLERANCE;
     let solution = lights.of(&medium, &Resolution::TABLES, Orders::Converged { tolerance }).light;
     let reconstruction = Reconstruction::new(&nm, &planet.star.irradiance);
     let illuminance = reconstruction.sum(|_| 1.0)[1];

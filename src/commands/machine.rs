@@ -74,7 +74,7 @@ fn check_threads(threads: Option<usize>) -> Result<Option<usize>> {
 /// `auto`, a number of even samples, or a list of nm.
 pub fn wavelengths(text: &str) -> std::result::Result<Vec<f64>, String> {
     if text == "auto" {
-        return Ok(crate::spectrum::grid(crate::bake::settings::WAVELENGTHS));
+        return Ok(crate::spectrum::grid(crate::layout::settings::WAVELENGTHS));
     }
     if let Ok(n) = text.parse::<usize>()
         && n < 100

@@ -3,12 +3,13 @@
 use super::bake::space;
 use super::text::print;
 use crate::bake::recolour::{Source, Wanted, recolour};
-use crate::bake::{compact, skies};
+use crate::colour::samples as skies;
 use crate::error::{Error, Result};
 use crate::files::bounded_read;
 use crate::files::manifest::{MANIFEST, Manifest};
 use crate::files::staging::Staging;
-use crate::sky::pictures;
+use crate::layout::compact;
+use crate::layout::sky::pictures;
 use crate::spectrum::{Adaptation, Beholder, ColourSpace, Rgb, White};
 use std::path::PathBuf;
 

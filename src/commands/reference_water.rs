@@ -6,11 +6,11 @@ use super::text::stream;
 use crate::error::{Error, Result};
 use crate::files::points::{Answer, write_answers};
 use crate::geometry::Point;
+use crate::layout::water::lookup::WaterView;
 use crate::medium::Medium;
 use crate::preset;
 use crate::reference::Tracer;
 use crate::reference::water::{Air, Look, WaterTracer};
-use crate::sky::water::WaterView;
 
 /// Paths for each point and wavelength unless a number is given.
 const PATHS: u64 = 1 << 18;

@@ -3,13 +3,13 @@
 use super::machine::{MOST_WATER_ORDERS, with_threads};
 use super::sample::{Args, baked_orders, exact_wavelengths, fits, spectral};
 use super::text::stream;
-use crate::bake::water::{FINE, Skylight, Split};
 use crate::error::{Error, Result};
 use crate::files::manifest::Manifest;
 use crate::geometry::Point;
+use crate::layout::sky::Component;
+use crate::layout::water::lookup::{WaterSky, WaterView};
+use crate::layout::water::{FINE, Skylight, Split};
 use crate::preset::{Planet, Water};
-use crate::sky::Component;
-use crate::sky::water::{WaterSky, WaterView};
 use crate::transport::slab::{Layer, Light, Slab, Streams, Surface, WaterOrders, leaving, within};
 use crate::transport::solve::{Resolution, Solution};
 use rayon::prelude::*;

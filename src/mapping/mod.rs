@@ -1,19 +1,15 @@
 //! Tables as arrays, and the mappings between physical coordinates and texels. No physics here.
 
 mod array;
-mod bruneton;
 mod elek2010;
 mod layer;
 mod sun_curve;
 mod warp;
-mod water;
 mod window;
 
 pub use array::{Array, Element, Texel, texel};
-pub use bruneton::Bruneton;
 pub use elek2010::{AxisFormula, Elek2010, HALVES, WINDOW};
 pub use layer::Layer;
 pub use sun_curve::SunCurve;
 pub use warp::Bends;
-pub use water::{EvenCosine, WaterAxes};
 pub use window::{Span, Views, Window};

@@ -1,16 +1,16 @@
 //! Tables of a bake, read as an engine reads them: this project's layouts, and others' tables that its baker fills.
 
 use super::{Family, Method, Prepared, PreparedSky};
-use crate::bake::settings::{Layout, Settings};
 use crate::bake::{Lights, Product, bake_in};
 use crate::error::{Error, Result};
 use crate::files::manifest::{Encoding, EncodingKind, Manifest, Table};
 use crate::files::{Atlas, Samples, exr};
 use crate::geometry::Point;
 use crate::geometry::view::View;
+use crate::layout::settings::{Layout, Settings};
+use crate::layout::sky::{Component, Sky};
 use crate::machine::cpu_time::cpu_time;
 use crate::preset::Planet;
-use crate::sky::{Component, Sky};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;

@@ -3,8 +3,8 @@
 use super::{BakedTables, Elek2009, Family, Method, Nishita, OneilMarch, Schafhitzel, Storage};
 use crate::algorithm1::Gather;
 use crate::bake::Lights;
-use crate::bake::compact::Sizes;
-use crate::bake::settings::{Layout, Settings, Solver};
+use crate::layout::compact::Sizes;
+use crate::layout::settings::{Layout, Settings, Solver};
 use crate::spectrum::grid;
 use crate::transport::solve::Orders;
 use std::sync::Arc;

@@ -11,10 +11,10 @@ use super::air::{Air, Rgb, WAVELENGTHS_NM, on_ray, through};
 use super::columns::SunDepth;
 use super::texture::{TEXEL, to_halves};
 use super::{Family, Method, Prepared, PreparedSky};
-use crate::bake::compact::groups;
 use crate::error::Result;
 use crate::geometry::Point;
 use crate::geometry::view::View;
+use crate::layout::compact::groups;
 use crate::machine::lanes::Lanes;
 use crate::mapping::{Array, Elek2010, texel};
 use crate::medium::{Medium, PhaseFunction};
@@ -69,7 +69,7 @@ impl Sky {
         let solution = Solution::new(
             &medium,
             &Resolution::TABLES,
-            Orders::Converged { tolerance: crate::bake::settings::TOLERANCE },
+            Orders::Converged { tolerance: crate::layout::settings::TOLERANCE },
         );
         let [altitudes, views, suns] = size;
         let map = Elek2010::new(medium.ground_radius, medium.top_radius, [altitudes, views, suns, 2]);

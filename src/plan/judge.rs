@@ -2,10 +2,10 @@
 
 use crate::geometry::Point;
 use crate::geometry::view::View;
+use crate::layout::sky::{Component, Sky};
 use crate::medium::Medium;
 use crate::preset::{Metric, Scene, Tolerance};
 use crate::quality::{Distribution, Scope, colour_error};
-use crate::sky::{Component, Sky};
 use crate::spectrum::{ColourSpace, Reconstruction, delta_e_2000_scaled, multiply};
 use crate::transport::solve::Solution;
 use rayon::prelude::*;

@@ -2,18 +2,19 @@
 
 use super::judge::{Errors, Judge};
 use super::model::{Cost, Model};
-use crate::bake::compact::{self, Maker};
 use crate::bake::describe;
 use crate::bake::files::Files;
-use crate::bake::palette::Palette;
-use crate::bake::settings::Settings;
-use crate::bake::skies;
-use crate::bake::tables::Baked;
+use crate::colour::samples as skies;
+use crate::colour::weights::Palette;
 use crate::error::{Error, Result};
+use crate::layout::compact;
+use crate::layout::compact::Maker;
+use crate::layout::settings::Settings;
+use crate::layout::sky::Sky;
+use crate::layout::table_data::Baked;
 use crate::mapping::Window;
 use crate::medium::Medium;
 use crate::preset::Planet;
-use crate::sky::Sky;
 use crate::transport::solve::{Orders, Resolution, Solution};
 use std::path::Path;
 use std::rc::Rc;

@@ -11,6 +11,7 @@ mod model;
 mod moves;
 mod search;
 mod told;
+mod water_trial;
 mod waters;
 
 pub use judge::Errors;
@@ -18,8 +19,8 @@ pub use model::{Cost, Model};
 pub use search::{Omission, Tried};
 pub use waters::{WaterPlan, load as load_waters};
 
-use crate::bake::settings::WAVELENGTHS;
 use crate::error::{Error, Result};
+use crate::layout::settings::WAVELENGTHS;
 use crate::preset::{Planet, Scene};
 use crate::spectrum::{Reconstruction, grid};
 use crate::transport::solve::{Orders, Resolution, Solution};

@@ -1,9 +1,9 @@
 //! A model that the planner may choose: settings of a bake of the layout `compact`, and what it costs to keep and to
 //! look up.
 
-use crate::bake::compact::{Design, IRRADIANCE_SIZE, groups_to_fold};
-use crate::bake::extinction::PHASE_SIZE;
-use crate::bake::settings::{Layout, Settings, TOLERANCE, WAVELENGTHS};
+use crate::layout::compact::{Design, IRRADIANCE_SIZE, groups_to_fold};
+use crate::layout::extinction::PHASE_SIZE;
+use crate::layout::settings::{Layout, Settings, TOLERANCE, WAVELENGTHS};
 use crate::mapping::{Views, Window};
 use crate::medium::Medium;
 use crate::spectrum::grid;

@@ -2,8 +2,9 @@
 
 use super::lab::Lab;
 use super::model::Model;
-use crate::bake::compact::{self, Kind, Sizes, groups_to_fold};
 use crate::error::Result;
+use crate::layout::compact;
+use crate::layout::compact::{Kind, Sizes, groups_to_fold};
 use crate::mapping::{Views, Window};
 use crate::medium::Medium;
 use crate::preset::Scene;

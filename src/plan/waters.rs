@@ -2,13 +2,14 @@
 
 use super::judge::Errors;
 use super::search::{Omission, TAIL, beyond};
-use crate::bake::palette::Palette;
-use crate::bake::water::{SIZE, Split, Trial, Under, bytes};
+use super::water_trial::{Trial, Under};
+use crate::colour::weights::Palette;
 use crate::error::Result;
+use crate::layout::water::lookup::{WaterSky, WaterView};
+use crate::layout::water::{SIZE, Split, bytes};
 use crate::medium::Medium;
 use crate::preset::{self, Metric, Planet, Scene, SceneWater, Water};
 use crate::quality::colour_error;
-use crate::sky::water::{WaterSky, WaterView};
 use crate::spectrum::{ColourSpace, delta_e_2000_scaled, multiply};
 use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Solution;

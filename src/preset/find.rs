@@ -111,7 +111,7 @@ mod tests {
     #[test]
     fn no_layout_is_left_out() {
         let all: Vec<&str> =
-            crate::bake::settings::Layout::value_variants().iter().map(|l| l.name()).collect();
+            crate::layout::settings::Layout::value_variants().iter().map(|l| l.name()).collect();
         assert_eq!(all, LAYOUTS);
     }
 

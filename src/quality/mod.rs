@@ -8,6 +8,9 @@ pub use views::{REGIONS, Region, views};
 
 use serde_json::{Value, json};
 
+/// Radiance over solar irradiance below which relative errors mean nothing, 1/sr: far below starlight.
+pub const DARK: f64 = 1e-12;
+
 /// Median, 95th percentile and largest of a list of errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Distribution {

@@ -141,7 +141,7 @@ fn talk_of_memory() {
 #[cfg(target_os = "linux")]
 #[test]
 fn the_estimate_of_memory() {
-    use tyndall::bake::settings::{Layout, Settings};
+    use tyndall::layout::settings::{Layout, Settings};
     let dir = tempfile::tempdir().unwrap();
     for (text, size) in [("32x128x32x8", [32, 128, 32, 8]), ("48x128x48x8", [48, 128, 48, 8])] {
         let mut command = command();

@@ -2,15 +2,15 @@
 
 use std::path::Path;
 use tyndall::bake::bake;
-use tyndall::bake::compact::Sizes;
-use tyndall::bake::settings::{Layout, Settings};
 use tyndall::files::exr::from_exr_bytes;
 use tyndall::geometry::Point;
 use tyndall::geometry::view::View;
+use tyndall::layout::compact::Sizes;
+use tyndall::layout::settings::{Layout, Settings};
+use tyndall::layout::sky::{AerosolPhase, Channels, Component, Sky};
 use tyndall::medium::DensityProfile;
 use tyndall::preset::{self, Planet};
 use tyndall::quality::Distribution;
-use tyndall::sky::{AerosolPhase, Channels, Component, Sky};
 use tyndall::spectrum::grid;
 use tyndall::transport::solve::{Orders, Resolution, Solution};
 

@@ -3,12 +3,12 @@
 use serde_json::Value;
 use std::path::Path;
 use tyndall::bake::bake;
-use tyndall::bake::settings::Settings;
 use tyndall::geometry::Point;
 use tyndall::geometry::view::View;
+use tyndall::layout::settings::Settings;
+use tyndall::layout::sky::{AerosolPhase, Component, Sky};
 use tyndall::preset;
 use tyndall::quality::{Distribution, REGIONS, relative_errors, views};
-use tyndall::sky::{AerosolPhase, Component, Sky};
 use tyndall::spectrum::grid;
 use tyndall::transport::solve::{Orders, Resolution, Solution};
 
@@ -51,7 +51,9 @@ fn baked(name: &str) -> Baked {
 /// The compact tables of a preset against a finer solve, on views that the report does not use.
 fn compact_is_close_to_the_truth(name: &str) {
     let Baked { sky, quality } = baked(name);
-    let tyndall::sky::Channels::Wavelengths(nm) = sky.channels() else { panic!("compact holds wavelengths") };
+    let tyndall::layout::sky::Channels::Wavelengths(nm) = sky.channels() else {
+        panic!("compact holds wavelengths")
+    };
     let medium = preset::load(name, &[]).expect("a shipped preset").medium(&nm);
     let finer =
         Resolution { levels: Resolution::EXACT.levels, first_azimuths: 16, degree: 10, ..Resolution::TABLES };

@@ -1,8 +1,8 @@
 //! What cannot be mended is told.
 
 use tyndall::bake::bake;
-use tyndall::bake::compact::Sizes;
-use tyndall::bake::settings::Settings;
+use tyndall::layout::compact::Sizes;
+use tyndall::layout::settings::Settings;
 use tyndall::preset;
 
 fn warnings(settings: &Settings) -> Vec<String> {

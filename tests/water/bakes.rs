@@ -133,20 +133,22 @@ fn manifest_and_report() {
 #[test]
 fn options() {
     let dir = tempfile::tempdir().unwrap();
-    let size = ["--size", "water=12x16x12"];
-    let with =
-        |folder: &str, more: &[&str]| bake(&dir.path().join(folder), "sandy", &[&size[..], more].concat());
-    let all = with("a", &["--underwater"]);
+    let with = |folder: &str, size: &str, more: &[&str]| {
+        bake(&dir.path().join(folder), "sandy", &[&["--size", size][..], more].concat())
+    };
+    let (size, tiny) = ("water=12x16x12", "water=3x4x3");
+    let all = with("a", size, &["--underwater"]);
+    let single = with("b", size, &["--water-orders", "1"]);
     let [once, again] = ["1", "3"]
-        .map(|threads| with(threads, &["--water-orders", "1", "--underwater", "--threads", threads]));
+        .map(|threads| with(threads, tiny, &["--water-orders", "1", "--underwater", "--threads", threads]));
     for entry in fs::read_dir(once.join("water")).unwrap() {
         let file = entry.unwrap().file_name();
         let read = |bake: &Path| fs::read(bake.join("water").join(&file)).unwrap();
         assert!(read(&once) == read(&again), "{file:?}");
     }
     let ask = ["--water", "sandy", "--depth", "6", "--component", "scattering"];
-    let more = with("d", &["--water-orders", "3"]);
-    let [whole, single, three] = [&all, &once, &more].map(|bake| sample(bake, &ask));
+    let more = with("d", size, &["--water-orders", "3"]);
+    let [whole, single, three] = [&all, &single, &more].map(|bake| sample(bake, &ask));
     let rises = |k: usize| single[k] > 0.0 && single[k] < three[k] && three[k] < whole[k];
     assert!((0..4).all(rises), "{single:?} {three:?} {whole:?}");
     // Solved afresh with the orders of the bake, and at a depth in the water.

@@ -1,7 +1,7 @@
 //! The sky's light on water: parts, rings, and a planet's own sky against Monte Carlo from the eye to the sun.
 
 use super::media::*;
-use tyndall::bake::water::{FINE, Skylight, Split};
+use tyndall::layout::water::{FINE, Skylight, Split};
 use tyndall::medium::PhaseFunction::HenyeyGreenstein;
 use tyndall::reference::Tracer;
 use tyndall::reference::water::{Air, Look, WaterTracer};

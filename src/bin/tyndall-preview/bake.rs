@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use tyndall::files::manifest::{Manifest, Table};
 use tyndall::files::{Atlas, Samples};
-use tyndall::sky::{self, Sky, shader};
+use tyndall::layout::sky::Sky;
+use tyndall::layout::{shader, sky};
 use tyndall::{Error, Result};
 
 /// The layouts that there are shaders for.

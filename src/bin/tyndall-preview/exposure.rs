@@ -4,8 +4,8 @@ use crate::bake::Bake;
 use crate::camera::Camera;
 use glam::{DMat3, DVec3};
 use tyndall::geometry::Point;
-use tyndall::sky::Component;
-use tyndall::sky::water::WaterView;
+use tyndall::layout::sky::Component;
+use tyndall::layout::water::lookup::WaterView;
 
 /// Either found from the picture or an exposure value at ISO 100.
 #[derive(Clone, Copy, Debug, PartialEq)]

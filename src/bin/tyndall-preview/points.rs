@@ -10,9 +10,9 @@ use std::path::Path;
 use tyndall::Result;
 use tyndall::files::points::{Answer, read_points, write_answers};
 use tyndall::geometry::Point;
+use tyndall::layout::sky::Channels;
+use tyndall::layout::water::lookup::WaterView;
 use tyndall::machine::output::stream;
-use tyndall::sky::Channels;
-use tyndall::sky::water::WaterView;
 
 /// Reads views, asks the GPU, writes the answers.
 ///

@@ -5,8 +5,9 @@ use crate::gpu::Gpu;
 use crate::resources::{texture, texture_entry, uniform_entry};
 use bytemuck::{Pod, Zeroable};
 use tyndall::files::manifest::Manifest;
-use tyndall::sky::shader::{TableConstants, four, rgb_rows};
-use tyndall::sky::{self, water};
+use tyndall::layout::shader::{TableConstants, four, rgb_rows};
+use tyndall::layout::sky;
+use tyndall::layout::water::lookup as water;
 use tyndall::{Error, Result};
 
 /// Tables of a water, in the order of their bindings; `{}` stands for its name.

@@ -1,6 +1,6 @@
 //! How bakes get on: a bar each on a terminal, a line at begin and end elsewhere; and the times of their stages.
 
-use crate::bake::settings::{Layout, Settings};
+use crate::layout::settings::{Layout, Settings};
 use crate::machine::cpu_time::cpu_time;
 use crate::machine::output;
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};

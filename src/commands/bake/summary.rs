@@ -2,8 +2,8 @@
 
 use super::super::text::print;
 use super::progress::Stage;
-use crate::bake::settings::Layout;
 use crate::error::{Error, Result};
+use crate::layout::settings::Layout;
 use crate::machine::memory;
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;

@@ -1,8 +1,9 @@
 //! Ranges of altitudes and suns as people write them, and sizes of tables that suit them.
 
-use crate::bake::compact::{self, Kind};
-use crate::bake::elek2010;
-use crate::bake::settings::Settings;
+use crate::layout::compact;
+use crate::layout::compact::Kind;
+use crate::layout::elek2010;
+use crate::layout::settings::Settings;
 use crate::mapping::{Elek2010, Views};
 use crate::medium::Medium;
 use crate::preset::{Metric, Tolerance};

@@ -4,8 +4,8 @@ use super::{Bake, TableDifference, Texels};
 use crate::error::Result;
 use crate::files::Atlas;
 use crate::files::manifest::Table;
+use crate::layout::sky::picture;
 use crate::quality::Distribution;
-use crate::sky::picture;
 use rayon::prelude::*;
 
 /// Share of a table's largest value below which a value counts as that: differences in the dark are not seen.

@@ -1,12 +1,12 @@
 //! What two bakes answer at the same views, drawn by regions as those of the quality report.
 
 use super::{Bake, ViewDifference};
-use crate::bake::report::DARK;
-use crate::bake::settings::Layout;
 use crate::error::{Error, Result};
 use crate::geometry::Point;
+use crate::layout::settings::Layout;
+use crate::layout::sky::{AerosolPhase, Channels, Component, Sky};
+use crate::quality::DARK;
 use crate::quality::{Distribution, REGIONS, Region, views};
-use crate::sky::{AerosolPhase, Channels, Component, Sky};
 use crate::spectrum::{delta_e_2000_scaled, invert, multiply};
 use rayon::prelude::*;
 

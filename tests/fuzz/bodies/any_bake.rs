@@ -7,12 +7,12 @@ use super::{good, presets, refused};
 use clap::{Args as _, Command, FromArgMatches};
 use serde_json::{Value, json};
 use tyndall::Error;
-use tyndall::bake::settings::Layout;
 use tyndall::bake::{Lights, Product, bake_in};
 use tyndall::commands::bake::{Args, settings_of};
 use tyndall::geometry::Point;
+use tyndall::layout::settings::Layout;
+use tyndall::layout::sky::{AerosolPhase, Component};
 use tyndall::preset;
-use tyndall::sky::{AerosolPhase, Component};
 
 pub fn any_bake(bytes: &[u8]) {
     let mut choices = Choices::new(bytes);

@@ -7,19 +7,20 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
-use tyndall::bake::compact::Sizes;
 use tyndall::bake::recolour::{Source, Wanted, recolour};
-use tyndall::bake::settings::{Layout, Settings};
-use tyndall::bake::water::Waters;
 use tyndall::bake::{self, Product, inputs};
+use tyndall::colour::samples;
 use tyndall::commands::{diff, verify};
 use tyndall::files::Atlas;
 use tyndall::files::exr::{from_exr_bytes, to_exr_bytes};
 use tyndall::files::manifest::Manifest;
 use tyndall::geometry::Point;
+use tyndall::layout::compact::Sizes;
+use tyndall::layout::settings::{Layout, Settings};
+use tyndall::layout::sky::{AerosolPhase, Component, Sky};
+use tyndall::layout::water::Waters;
+use tyndall::layout::water::lookup::{WaterSky, WaterView};
 use tyndall::preset::{self, Planet};
-use tyndall::sky::water::{WaterSky, WaterView};
-use tyndall::sky::{AerosolPhase, Component, Sky};
 use tyndall::spectrum::{Beholder, ColourSpace, Rgb};
 use tyndall::transport::solve::Orders;
 
@@ -119,8 +120,7 @@ pub fn exr(bytes: &[u8]) {
 /// real file's, which is compressed.
 pub fn skies(bytes: &[u8]) {
     let nm = [450.0, 550.0, 650.0];
-    let real =
-        || from_exr_bytes(file(), bytes_of(&baked().product, bake::skies::FILE)).expect("our own file");
+    let real = || from_exr_bytes(file(), bytes_of(&baked().product, samples::FILE)).expect("our own file");
     let found = match bytes.split_first() {
         Some((0..9, changes)) => {
             let mut atlas = real();
@@ -135,11 +135,11 @@ pub fn skies(bytes: &[u8]) {
                 }
             }
             match to_exr_bytes(&atlas) {
-                Ok(bytes) => bake::skies::from_file(file(), &bytes, &nm),
+                Ok(bytes) => samples::from_file(file(), &bytes, &nm),
                 Err(_) => return,
             }
         }
-        _ => bake::skies::from_file(file(), bytes, &nm),
+        _ => samples::from_file(file(), bytes, &nm),
     };
     match found {
         Err(error) => refused(&error),
@@ -226,7 +226,7 @@ pub fn recoloured(bytes: &[u8]) {
         folder: file(),
         manifest: &manifest,
         tables: &baked.pictures["compact"],
-        skies: bytes_of(&baked.product, bake::skies::FILE),
+        skies: bytes_of(&baked.product, samples::FILE),
     };
     let wanted = Wanted {
         star_k: Some(4000.0),

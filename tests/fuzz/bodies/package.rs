@@ -5,13 +5,13 @@ use super::{bakes, file, refused};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::OnceLock;
-use tyndall::bake::settings::{Layout, Settings};
 use tyndall::bake::{self, Product};
 use tyndall::files::Atlas;
 use tyndall::files::exr::from_exr_bytes;
 use tyndall::files::manifest::Manifest;
+use tyndall::layout::settings::{Layout, Settings};
+use tyndall::layout::sky::Sky;
 use tyndall::preset;
-use tyndall::sky::Sky;
 use tyndall::transport::solve::Orders;
 
 struct Baked {

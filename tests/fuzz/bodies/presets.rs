@@ -4,7 +4,7 @@ use super::edits::{Base, text};
 use super::{good, refused};
 use std::sync::OnceLock;
 use tyndall::bake::memory::estimate;
-use tyndall::bake::settings::Settings;
+use tyndall::layout::settings::Settings;
 use tyndall::preset::{self, Planet, Water};
 
 macro_rules! bases {

@@ -1,0 +1,210 @@
+//! What baked tables answer, from their files alone: the look-ups that an engine does, in double precision.
+//!
+//! Knows manifests and decoded pictures, nothing of presets or of the solver.
+
+mod check;
+pub(in crate::layout) mod volume;
+
+use super::compact::lookup::Compact;
+use super::elek2010::lookup::Elek2010Sky;
+use super::three_atmosphere::lookup::ThreeAtmosphere;
+use crate::error::{Error, Result};
+use crate::files::bounded_read;
+use crate::files::manifest::{Manifest, Table};
+use crate::files::{Atlas, exr};
+use crate::geometry::Point;
+use std::collections::BTreeMap;
+use std::path::Path;
+use volume::{Plane, Volume};
+
+/// Which part of the light is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Component {
+    Total,
+    Scattering,
+    Ground,
+}
+
+/// A phase function to put on aerosol light in place of the table's own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AerosolPhase {
+    /// The preset's, from the phase table.
+    Preset,
+    /// Isotropic: the medium that the paper's layout was solved for.
+    Isotropic,
+}
+
+/// A layout of a bake, ready to answer. One is open at a time, so that its size on the stack does not matter.
+#[expect(clippy::large_enum_variant)]
+pub enum Sky {
+    Compact(Compact),
+    Elek2010(Elek2010Sky),
+    ThreeAtmosphere(ThreeAtmosphere),
+}
+
+/// What the answers of a layout are.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Channels {
+    /// Radiance over solar irradiance, 1/sr, at these wavelengths, nm.
+    Wavelengths(Vec<f64>),
+    /// Linear RGB: luminance over the star's illuminance, 1/sr.
+    Rgb,
+}
+
+impl Sky {
+    /// Opens one layout of a bake on disk.
+    ///
+    /// # Errors
+    /// `File` for a missing, truncated or foreign file, or one that the manifest does not describe.
+    pub fn open(bake: &Path, manifest: &Manifest, layout: &str) -> Result<Sky> {
+        Sky::new(bake, manifest, layout, &pictures(bake, manifest, layout)?)
+    }
+
+    /// The same from pictures in memory, by table name. `bake` is for messages.
+    pub fn new(
+        bake: &Path,
+        manifest: &Manifest,
+        layout: &str,
+        pictures: &BTreeMap<String, Atlas>,
+    ) -> Result<Sky> {
+        let source = Source { bake, manifest, layout, pictures };
+        source.check()?;
+        match layout {
+            "compact" => Ok(Sky::Compact(Compact::new(&source)?)),
+            "elek2010" => Ok(Sky::Elek2010(Elek2010Sky::new(&source)?)),
+            "three-atmosphere" => Ok(Sky::ThreeAtmosphere(ThreeAtmosphere::new(&source)?)),
+            other => Err(Error::Argument(format!("layout {other}: not one that this tool can read"))),
+        }
+    }
+
+    pub fn channels(&self) -> Channels {
+        match self {
+            Sky::Compact(sky) => Channels::Wavelengths(sky.wavelengths_nm.clone()),
+            Sky::Elek2010(_) | Sky::ThreeAtmosphere(_) => Channels::Rgb,
+        }
+    }
+
+    /// What of a view the tables do not hold, as key, value and reason, where they are for a window that it is not in:
+    /// there [`Sky::radiance`] answers with the nearest that they do hold.
+    pub fn outside(&self, point: &Point) -> Option<(&'static str, f64, String)> {
+        match self {
+            Sky::Compact(sky) => volume::outside(point, sky.mapping()),
+            Sky::Elek2010(sky) => volume::outside(point, sky.mapping()),
+            Sky::ThreeAtmosphere(_) => None,
+        }
+    }
+
+    /// The light that arrives at a point of view, one value a channel, 1/sr.
+    pub fn radiance(&self, point: &Point, component: Component, phase: AerosolPhase) -> Vec<f64> {
+        match self {
+            Sky::Compact(sky) => sky.radiance(point, component),
+            Sky::Elek2010(sky) => sky.radiance(point, component, phase).to_vec(),
+            Sky::ThreeAtmosphere(sky) => sky.radiance(point, component).to_vec(),
+        }
+    }
+
+    /// Sunlight that arrives at an observer in the air, on a plane normal to it, linear RGB over the star's illuminance.
+    pub fn sunlight(&self, altitude: f64, mu_s: f64) -> [f64; 3] {
+        match self {
+            Sky::Compact(sky) => sky.rgb(&sky.sunlight(altitude, mu_s)),
+            Sky::Elek2010(sky) => sky.sunlight(altitude, mu_s),
+            Sky::ThreeAtmosphere(sky) => sky.sunlight(altitude, mu_s),
+        }
+    }
+
+    /// The light of [`Sky::radiance`] as linear RGB over the star's illuminance, 1/sr.
+    pub fn rgb(&self, point: &Point, component: Component) -> [f64; 3] {
+        match self {
+            Sky::Compact(sky) => sky.rgb(&sky.radiance(point, component)),
+            Sky::Elek2010(sky) => sky.radiance(point, component, AerosolPhase::Preset),
+            Sky::ThreeAtmosphere(sky) => sky.radiance(point, component),
+        }
+    }
+}
+
+/// The pictures of a layout's tables, by table name. Whether they are what their manifest says, [`Sky::new`] finds.
+///
+/// # Errors
+/// `File` for a file that is missing, damaged, or another than the one that was baked.
+pub fn pictures(bake: &Path, manifest: &Manifest, layout: &str) -> Result<BTreeMap<String, Atlas>> {
+    let folder = if bake.is_dir() { bake } else { bake.parent().unwrap_or(Path::new(".")) };
+    let tables = manifest.tables.iter().filter(|t| t.layout == layout);
+    tables.map(|table| Ok((table.name.clone(), picture(folder, table)?))).collect()
+}
+
+/// Reads the file of a table.
+///
+/// # Errors
+/// `File` for a file that is missing, damaged, or another than the one that was baked.
+pub fn picture(folder: &Path, table: &Table) -> Result<Atlas> {
+    let path = folder.join(&table.file);
+    let bytes = bounded_read::part(folder, &table.file).map_err(|e| Error::reading(&path, e))?;
+    let atlas = exr::from_exr_bytes(&path, &bytes)?;
+    if blake3::hash(&bytes).to_hex().as_str() != table.blake3 {
+        return Err(Error::file(&path, "not the file that was baked (bake.json has another BLAKE3)"));
+    }
+    Ok(atlas)
+}
+
+/// Where a layout's tables come from.
+pub(in crate::layout) struct Source<'a> {
+    pub(in crate::layout) bake: &'a Path,
+    pub(in crate::layout) manifest: &'a Manifest,
+    pub(in crate::layout) layout: &'a str,
+    pub(in crate::layout) pictures: &'a BTreeMap<String, Atlas>,
+}
+
+impl Source<'_> {
+    pub(in crate::layout) fn refuse(&self, reason: String) -> Error {
+        Error::file(self.bake, reason)
+    }
+
+    pub(in crate::layout) fn table(&self, name: &str) -> Result<(&Table, &Atlas)> {
+        let found = self.manifest.tables.iter().find(|t| t.layout == self.layout && t.name == name);
+        match (found, self.pictures.get(name)) {
+            (Some(table), Some(atlas)) => Ok((table, atlas)),
+            _ => Err(self.refuse(format!("layout {} has no table {name}", self.layout))),
+        }
+    }
+
+    pub(in crate::layout) fn has(&self, name: &str) -> bool {
+        self.manifest.tables.iter().any(|t| t.layout == self.layout && t.name == name)
+    }
+
+    pub(in crate::layout) fn volume(&self, name: &str) -> Result<Volume> {
+        let (table, atlas) = self.table(name)?;
+        Volume::new(table, atlas).map_err(|reason| self.refuse(reason))
+    }
+
+    pub(in crate::layout) fn plane(&self, name: &str) -> Result<Plane> {
+        let (table, atlas) = self.table(name)?;
+        Plane::new(table, atlas).map_err(|reason| self.refuse(reason))
+    }
+
+    /// A list of numbers of the manifest.
+    pub(in crate::layout) fn constant(&self, name: &str) -> Result<Vec<f64>> {
+        let found = self.manifest.constants.get(name);
+        found.cloned().ok_or_else(|| self.refuse(format!("bake.json: constants.{name} is missing")))
+    }
+
+    pub(in crate::layout) fn number(&self, name: &str) -> Result<f64> {
+        let list = self.constant(name)?;
+        list.first().copied().ok_or_else(|| self.refuse(format!("bake.json: constants.{name} is empty")))
+    }
+
+    /// A colour matrix as rows R, G, B.
+    pub(in crate::layout) fn matrix(&self, name: &str) -> Result<Vec<Vec<f64>>> {
+        let found = self.manifest.colour.matrices.get(name);
+        match found {
+            Some(m) if m.len() == 3 => Ok(m.clone()),
+            _ => {
+                Err(self
+                    .refuse(format!("bake.json: colour.matrices.{name} is missing or has not three rows")))
+            }
+        }
+    }
+}
+
+pub(in crate::layout) fn multiply(matrix: &[Vec<f64>], values: &[f64]) -> [f64; 3] {
+    std::array::from_fn(|c| matrix[c].iter().zip(values).map(|(m, v)| m * v).sum())
+}
