@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use tyndall::bake::bake;
 use tyndall::geometry::view::View;
 use tyndall::layout::settings::Settings;
-use tyndall::layout::sky::{Component, Sky};
+use tyndall::layout::sky::{self, Component, Sky};
 use tyndall::mapping::Views;
 use tyndall::plan::{Effort, Plan, plan};
 use tyndall::preset::{self, Budget, Metric, Planet, Scene, Tolerance};
@@ -45,14 +45,14 @@ fn planned() -> &'static Plan {
 }
 
 /// The sky of a bake, opened from its files as any reader would.
-fn baked(settings: &Settings, folder: &Path) -> Sky {
+fn baked(settings: &Settings, folder: &Path) -> Box<dyn Sky> {
     let product = bake(&planet(), settings, &mut |_| {}).unwrap();
     for (file, bytes) in &product.files {
         let path = folder.join(file);
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
         std::fs::write(path, bytes).unwrap();
     }
-    Sky::open(folder, &product.manifest, "compact").unwrap()
+    sky::open(folder, &product.manifest, "compact").unwrap()
 }
 
 /// Baked to files with the settings that the plan gives, the model keeps its promise on views that the planner never

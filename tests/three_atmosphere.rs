@@ -5,9 +5,10 @@ use tyndall::bake::{Product, bake};
 use tyndall::files::exr::from_exr_bytes;
 use tyndall::geometry::Point;
 use tyndall::geometry::view::View;
-use tyndall::layout::settings::{Layout, Settings};
-use tyndall::layout::sky::{AerosolPhase, Component, Sky};
+use tyndall::layout::settings::Settings;
+use tyndall::layout::sky::{self, AerosolPhase, Component, Sky};
 use tyndall::layout::three_atmosphere::Bruneton;
+use tyndall::layout::three_atmosphere::{LAYOUT, ThreeAtmosphereLayout};
 use tyndall::preset::{self, Planet};
 use tyndall::transport::solve::{Orders, Resolution, Solution};
 
@@ -19,16 +20,16 @@ fn planet() -> Planet {
 
 fn settings() -> Settings {
     let wavelengths_nm = vec![420.0, 480.0, 540.0, 600.0, 660.0];
-    Settings { layouts: vec![Layout::ThreeAtmosphere], wavelengths_nm, ..Settings::default() }
+    Settings { layouts: vec![&ThreeAtmosphereLayout], wavelengths_nm, ..Settings::default() }
 }
 
-fn open(product: &Product) -> Sky {
+fn open(product: &Product) -> Box<dyn Sky> {
     let tables = product.manifest.tables.iter();
     let pictures = tables.map(|t| {
         let bytes = &product.files.iter().find(|(name, _)| *name == t.file).unwrap().1;
         (t.name.clone(), from_exr_bytes(t.file.as_ref(), bytes).unwrap())
     });
-    Sky::new(FOLDER.as_ref(), &product.manifest, "three-atmosphere", &pictures.collect()).unwrap()
+    sky::of_pictures(FOLDER.as_ref(), &product.manifest, "three-atmosphere", &pictures.collect()).unwrap()
 }
 
 /// At texel centres nothing is interpolated: what is left of the difference to the solver's own integral, as RGB, is
@@ -137,7 +138,7 @@ fn diff_compares_views() {
     let compare =
         |a: &std::path::Path, b: &std::path::Path| tyndall::commands::diff::compare(a, b, 20).unwrap();
     let same = compare(&a, &a);
-    assert!(same.nothing() && same.views.iter().any(|v| v.layout == Layout::ThreeAtmosphere.name()));
+    assert!(same.nothing() && same.views.iter().any(|v| v.layout == LAYOUT));
     let differ = compare(&a, &b);
     let largest = differ.views.iter().map(|v| v.radiance.max).fold(0.0, f64::max);
     assert!(largest > 0.5, "{largest}");

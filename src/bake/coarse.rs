@@ -1,8 +1,6 @@
 //! Sheets of the air that the altitudes of a bake's tables are too far apart for.
 
-use crate::layout::settings::{Layout, Settings};
-use crate::layout::three_atmosphere::Bruneton;
-use crate::layout::{compact, elek2010};
+use crate::layout::settings::Settings;
 use crate::mapping::Elek2010;
 use crate::medium::{Medium, Sheet};
 
@@ -12,17 +10,17 @@ pub fn sheets(medium: &Medium, settings: &Settings) -> Vec<String> {
     if found.is_empty() {
         return Vec::new();
     }
-    let layouts: Vec<(Layout, Vec<Elek2010>)> =
-        settings.layouts.iter().map(|&layout| (layout, mappings(medium, settings, layout))).collect();
+    let layouts: Vec<(&str, Vec<Elek2010>)> =
+        settings.layouts.iter().map(|layout| (layout.name(), layout.mappings(medium, settings))).collect();
     found.iter().filter_map(|sheet| warning(medium, sheet, &layouts)).collect()
 }
 
-fn warning(medium: &Medium, sheet: &Sheet, layouts: &[(Layout, Vec<Elek2010>)]) -> Option<String> {
+fn warning(medium: &Medium, sheet: &Sheet, layouts: &[(&str, Vec<Elek2010>)]) -> Option<String> {
     // Of a layout's tables, the coarsest.
     let spacing = |tables: &[Elek2010]| tables.iter().map(|t| step(t, sheet.altitudes)).fold(0.0, f64::max);
     let coarse: Vec<String> = layouts
         .iter()
-        .map(|(layout, tables)| (layout.name(), spacing(tables)))
+        .map(|(layout, tables)| (*layout, spacing(tables)))
         .filter(|(_, step)| *step > sheet.thickness())
         .map(|(name, step)| format!("{step:.0} m (layout {name})"))
         .collect();
@@ -44,22 +42,6 @@ fn digits(v: f64) -> f64 {
     format!("{v:.2e}").parse().unwrap_or(v)
 }
 
-/// The mappings of a layout's tables over altitude.
-fn mappings(medium: &Medium, settings: &Settings, layout: Layout) -> Vec<Elek2010> {
-    let window = &settings.window;
-    match layout {
-        Layout::Compact => {
-            let sizes = settings.compact.sizes;
-            let tables = [(compact::Kind::Single, sizes.single), (compact::Kind::Multiple, sizes.multiple)];
-            tables.iter().filter_map(|&(kind, size)| compact::mapping(medium, kind, size, window)).collect()
-        }
-        Layout::Elek2010 => elek2010::mapping(medium, settings.elek2010_size, window).into_iter().collect(),
-        Layout::ThreeAtmosphere => {
-            Elek2010::new(medium.ground_radius, medium.top_radius, Bruneton::SIZE).into_iter().collect()
-        }
-    }
-}
-
 /// Distance of the two altitudes of a table about the middle of what it holds of a stretch, m; 0 where it holds none.
 fn step(table: &Elek2010, [bottom, top]: [f64; 2]) -> f64 {
     let size = table.size()[0];
@@ -77,6 +59,7 @@ fn step(table: &Elek2010, [bottom, top]: [f64; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::layout::elek2010::Elek2010Layout;
     use crate::mapping::Window;
     use crate::medium::DensityProfile;
     use crate::preset;
@@ -112,7 +95,7 @@ mod tests {
         assert_eq!((told(10e3, 11e3, &usual).len(), told(10e3, 16e3, &usual)), (1, vec![]));
         assert_eq!(told(64.8e3, 65.3e3, &usual).len(), 1, "one that the top cuts");
         let mut small = usual.clone();
-        small.layouts = vec![Layout::Elek2010];
+        small.layouts = vec![&Elek2010Layout];
         small.elek2010_size = [4, 8, 8, 4];
         let told = told(10e3, 16e3, &small);
         assert!(told.len() == 1 && !told[0].contains("compact"), "{told:?}");

@@ -2,7 +2,7 @@
 //! that miss its own.
 
 use crate::colour::weights::{ColourError, Palette};
-use crate::layout::settings::Layout;
+use crate::layout::{self, Layout};
 use serde_json::{Map, Value};
 
 /// Error of the tables of a layout on 95 % of views by day, or of those near the horizon by day, above which the bake warns: five times that of the paper's.
@@ -66,7 +66,7 @@ fn spans(nm: &[f64]) -> bool {
 /// Warnings where the tables of a layout are so coarse that they miss the light of their own medium by day, and where the
 /// medium of the paper is not the planet's.
 pub fn tables(quality: &Map<String, Value>) -> Vec<String> {
-    let warning = |layout: Layout| {
+    let warning = |layout: &dyn Layout| {
         let of = |region: &str| {
             let found = quality.get(layout.report_key())?.get(region)?;
             found.get("rgb").unwrap_or(found)["p95"].as_f64()
@@ -74,7 +74,7 @@ pub fn tables(quality: &Map<String, Value>) -> Vec<String> {
         let worst = DAY.into_iter().filter_map(of).fold(0.0, f64::max);
         (worst > TABLES_WARNING).then(|| coarse(layout, worst))
     };
-    let mut out: Vec<String> = Layout::ALL.into_iter().filter_map(warning).collect();
+    let mut out: Vec<String> = layout::ALL.into_iter().filter_map(warning).collect();
     let simplified =
         quality.get("elek2010_against_the_full_medium").and_then(|q| q["day"]["median"].as_f64());
     if let Some(error) = simplified.filter(|e| *e > MEDIUM_WARNING) {
@@ -114,15 +114,11 @@ fn percent(error: f64) -> String {
     if error < 10.0 { format!("{:.0} %", 100.0 * error) } else { format!("{error:.0} times") }
 }
 
-fn coarse(layout: Layout, error: f64) -> String {
+fn coarse(layout: &dyn Layout, error: f64) -> String {
     let percent = if error < 100.0 { format!("{:.0} %", 100.0 * error) } else { "any measure".into() };
-    let mend = match layout {
-        Layout::Compact => "--size takes larger tables",
-        Layout::Elek2010 => "--size takes larger tables, and layout compact errs less",
-        Layout::ThreeAtmosphere => "its sizes are its reader's own, and layout compact errs less",
-    };
+    let remedy = layout.remedy();
     let name = layout.name();
-    format!("layout {name}: one in twenty views by day is off by more than {percent}; {mend}")
+    format!("layout {name}: one in twenty views by day is off by more than {percent}; {remedy}")
 }
 
 #[cfg(test)]
@@ -133,12 +129,13 @@ mod tests {
     /// A layout whose tables miss the day is warned of by its name, whichever it is; a good one is not.
     #[test]
     fn every_layout_is_judged() {
-        for layout in Layout::ALL {
+        for layout in layout::ALL {
             let report = |p95: f64| {
                 let error = json!({ "p95": p95 });
-                let regions = match layout {
-                    Layout::Compact => json!({ "day": { "rgb": error } }),
-                    _ => json!({ "day": error }),
+                let regions = if layout.name() == "compact" {
+                    json!({ "day": { "rgb": error } })
+                } else {
+                    json!({ "day": error })
                 };
                 let mut quality = Map::new();
                 quality.insert(layout.report_key().into(), regions);

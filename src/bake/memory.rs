@@ -3,9 +3,8 @@
 //! The large things are counted: states and rays while the solver works, fields and texels while tables are
 //! filled. It is meant to be a little too much rather than too little.
 
-use crate::layout::compact::groups;
-use crate::layout::settings::{Layout, Settings};
-use crate::layout::three_atmosphere::Bruneton;
+use crate::layout::MediumKind;
+use crate::layout::settings::Settings;
 use crate::medium::{Constituent, Medium};
 use crate::preset::Planet;
 use crate::transport::extent::Extent;
@@ -35,9 +34,8 @@ const MARGIN: f64 = 1.1;
 /// Estimate of the most memory that a bake takes, bytes.
 pub fn estimate(planet: &Planet, settings: &Settings) -> u64 {
     let medium = planet.medium(&settings.wavelengths_nm);
-    let wants = |layout| settings.layouts.contains(&layout);
-    let full = wants(Layout::Compact) || wants(Layout::ThreeAtmosphere);
-    let paper = wants(Layout::Elek2010);
+    let [full, paper] =
+        [MediumKind::Full, MediumKind::Paper].map(|kind| settings.layouts_of(kind).next().is_some());
     let solve = |medium: &Medium, resolution, wanted| match wanted {
         true => Solve::of(medium, resolution, settings.orders),
         false => Solve::default(),
@@ -118,21 +116,10 @@ struct Texels {
 
 fn texels(medium: &Medium, settings: &Settings) -> Texels {
     let of = |size: &[usize]| size.iter().map(|&n| n as f64).product::<f64>();
-    let wants = |layout| settings.layouts.contains(&layout);
-    let mut air = 0.0;
-    if wants(Layout::Compact) {
-        let sizes = settings.compact.sizes;
-        air += of(&sizes.multiple) + of(&sizes.single) * groups(medium).len() as f64;
-    }
-    if wants(Layout::ThreeAtmosphere) {
-        air += 3.0 * of(&Bruneton::SIZE);
-    }
-    if wants(Layout::Elek2010) {
-        air += of(&settings.elek2010_size);
-    }
+    let air: usize = settings.layouts.iter().map(|layout| layout.texels(medium, settings)).sum();
     let wavelengths = medium.wavelengths_nm.len() as f64;
     let spectral = if settings.spectral { of(&settings.elek2010_size) * wavelengths } else { 0.0 };
     let waters = &settings.waters;
     let each = of(&waters.size) * if waters.underwater { 3.0 } else { 1.0 };
-    Texels { air, spectral, water: each * waters.list.len() as f64 }
+    Texels { air: air as f64, spectral, water: each * waters.list.len() as f64 }
 }

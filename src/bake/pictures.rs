@@ -25,7 +25,7 @@ pub const FILE: &str = "preview.png";
 
 /// The picture, and the number of pixels that no display can show. Of tables for a window it shows what they hold.
 pub fn preview(
-    sky: &Sky,
+    sky: &dyn Sky,
     planet: &Planet,
     window: &Window,
     waters: &[(&str, &WaterSky)],
@@ -78,7 +78,7 @@ fn point(altitude: f64, v: [f64; 3], sun: f64) -> Point {
 
 /// Flat water below, straight down in the middle of the panel, the horizon on its circle: light out of the water
 /// and the sky that it mirrors. `v` is the direction of the mirrored ray, upwards.
-fn water_colour(sky: &Sky, water: &WaterSky, v: [f64; 3], sun: f64, depth: f64) -> [f64; 3] {
+fn water_colour(sky: &dyn Sky, water: &WaterSky, v: [f64; 3], sun: f64, depth: f64) -> [f64; 3] {
     let above = point(0.0, v, sun);
     let view =
         WaterView { depth: depth.min(water.largest_depth), mu: v[2].clamp(0.0, 1.0), mu_s: above.mu_s };
@@ -90,6 +90,6 @@ fn water_colour(sky: &Sky, water: &WaterSky, v: [f64; 3], sun: f64, depth: f64) 
 }
 
 /// Colours outside the gamut are brought to its edge: a display can do no other. What is not a number stays.
-fn colour(sky: &Sky, point: &Point) -> [f64; 3] {
+fn colour(sky: &dyn Sky, point: &Point) -> [f64; 3] {
     sky.rgb(point, Component::Total).map(|c| if c < 0.0 { 0.0 } else { c })
 }

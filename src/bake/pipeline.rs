@@ -9,18 +9,19 @@ use crate::colour::weights::Palette;
 use crate::error::{Error, Result};
 use crate::files::manifest::Manifest;
 use crate::layout::elek2010::spectral;
-use crate::layout::settings::{Layout, Settings, Solver};
-use crate::layout::shader;
-use crate::layout::sky::{AerosolPhase, Sky};
+use crate::layout::judge::{self, Truth};
+use crate::layout::settings::Settings;
+use crate::layout::sky::{self, AerosolPhase, Sky};
 use crate::layout::table_data::Baked;
 use crate::layout::water::WaterTables;
 use crate::layout::water::lookup::WaterSky;
-use crate::layout::{compact, elek2010, extinction, three_atmosphere, water};
+use crate::layout::{self, Filled, Ingredients, Layout, MediumKind, compact, elek2010, shader, water};
 use crate::medium::Medium;
 use crate::preset::{Planet, Water};
 use crate::spectrum::RANGE;
 use crate::transport::solve::{Orders, Resolution, Solution, worst};
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
@@ -65,17 +66,12 @@ pub fn bake_in(
     if let (true, Some(light)) = (settings.spectral, &solved.paper_light) {
         files.extra.extend(spectral::files(&solved.paper, light, planet, settings)?);
     }
-    let compact = settings.layouts.contains(&Layout::Compact);
-    if compact && sample.iter().any(|s| !s.transfers.is_empty()) {
+    if settings.has(compact::LAYOUT) && sample.iter().any(|s| !s.transfers.is_empty()) {
         files.extra.push(skies::file(&sample, &settings.wavelengths_nm)?);
     }
     let mut manifest = describe::manifest(planet, settings, &palette, &solved.full, &files);
-    if let Some(found) = &filled.three_atmosphere {
-        manifest.constants.extend(found.constants.clone());
-        let about = "parameters for the AtmosphereParameters of @takram/three-atmosphere";
-        let path = format!("{}/parameters.json", three_atmosphere::LAYOUT);
-        files.extra.push((path, about.into(), found.parameters.clone().into_bytes()));
-    }
+    manifest.constants.extend(filled.constants.clone());
+    files.extra.extend(filled.files.iter().cloned());
     if let Some(waters) = &filled.waters {
         describe::add_waters(&mut manifest, &settings.waters.list, waters);
     }
@@ -86,9 +82,7 @@ pub fn bake_in(
     let mut warnings = solved.warnings(&palette, &quality);
 
     let points = vectors::points(&solved.full, &settings.window);
-    files
-        .extra
-        .extend(skies.all().into_iter().map(|(layout, sky)| vectors::file(layout.name(), sky, &points)));
+    files.extra.extend(skies.all().map(|(layout, sky)| vectors::file(layout.name(), sky, &points)));
     for (layout, _) in skies.all() {
         files.extra.extend(shader::files(Path::new(IN_MEMORY), &manifest, layout.name())?);
     }
@@ -123,13 +117,23 @@ struct Solved<'a> {
     light_cpu: Duration,
 }
 
-/// Tables of all layouts, and what was odd about them.
+/// Tables of all layouts, and what goes with them.
 #[derive(Default)]
-struct Filled {
+struct All {
     tables: Vec<Baked>,
     counts: Map<String, Value>,
+    constants: BTreeMap<String, Vec<f64>>,
+    files: Vec<(String, String, Vec<u8>)>,
     waters: Option<WaterTables>,
-    three_atmosphere: Option<three_atmosphere::Tables>,
+}
+
+impl All {
+    fn add(&mut self, filled: Filled) {
+        self.tables.extend(filled.tables);
+        self.counts.extend(filled.counts);
+        self.constants.extend(filled.constants);
+        self.files.extend(filled.files);
+    }
 }
 
 impl<'a> Solved<'a> {
@@ -146,12 +150,12 @@ impl<'a> Solved<'a> {
             check_folded(&full, name)?;
         }
         let paper = full.similarity();
-        let wants = |layout| settings.layouts.contains(&layout);
+        let wants = |kind| settings.layouts_of(kind).next().is_some();
         stage("solve");
-        let full_light = (wants(Layout::Compact) || wants(Layout::ThreeAtmosphere))
-            .then(|| lights.of(&full, &Resolution::TABLES, settings.orders));
+        let full_light =
+            wants(MediumKind::Full).then(|| lights.of(&full, &Resolution::TABLES, settings.orders));
         stage("solve paper's medium");
-        let paper_light = (wants(Layout::Elek2010) || full_light.is_none())
+        let paper_light = (wants(MediumKind::Paper) || full_light.is_none())
             .then(|| lights.of(&paper, &Resolution::PAPER, settings.orders));
         let light_cpu = full_light.iter().chain(&paper_light).map(|l| l.cpu).sum();
         let [full_light, paper_light] = [full_light, paper_light].map(|l| l.map(|l| l.light));
@@ -178,98 +182,49 @@ impl<'a> Solved<'a> {
         Palette::fit(&self.settings.wavelengths_nm, irradiance, &self.settings.rgb, sample)
     }
 
-    fn fill(&self, palette: &Palette, stage: &mut dyn FnMut(&str)) -> Result<Filled> {
-        let mut filled = Filled::default();
-        if let (true, Some(light)) = (self.settings.layouts.contains(&Layout::Elek2010), &self.paper_light) {
-            stage("elek2010 tables");
-            self.fill_elek2010(light, palette, &mut filled)?;
+    /// The light in a medium, where it was solved.
+    fn light(&self, kind: MediumKind) -> Option<&Solution> {
+        match kind {
+            MediumKind::Full => self.full_light.as_deref(),
+            MediumKind::Paper => self.paper_light.as_deref(),
         }
-        if let (true, Some(light)) = (self.settings.layouts.contains(&Layout::Compact), &self.full_light) {
-            stage("compact tables");
-            let maker = compact::Maker {
-                medium: &self.full,
-                solution: light,
-                palette,
-                design: &self.settings.compact,
-                window: &self.settings.window,
-            };
-            let (tables, negative) = compact::tables(&maker);
-            filled.tables.extend(tables);
-            filled.counts.insert("compact multiple scattering below 0, set to dark".into(), json!(negative));
-        }
-        if let (true, Some(light)) =
-            (self.settings.layouts.contains(&Layout::ThreeAtmosphere), &self.full_light)
-        {
-            stage("three-atmosphere tables");
-            let mut found = three_atmosphere::tables(self.planet, &self.full, light, palette)?;
-            filled.tables.append(&mut found.tables);
-            let negative = "three-atmosphere colours outside the gamut, set to 0";
-            filled.counts.insert(negative.into(), json!(found.negative));
-            filled.three_atmosphere = Some(found);
-        }
-        if !self.settings.waters.list.is_empty() {
-            stage("water tables");
-            let (medium, light) = self.best();
-            let mut waters = water::tables(self.planet, self.settings, medium, light, palette)?;
-            filled.tables.append(&mut waters.tables);
-            filled.waters = Some(waters);
-        }
-        Ok(filled)
     }
 
-    fn fill_elek2010(&self, light: &Solution, palette: &Palette, filled: &mut Filled) -> Result<()> {
-        let (paper, settings) = (&self.paper, self.settings);
-        let (tables, oddities) = match settings.solver {
-            Solver::Moments => {
-                elek2010::tables(paper, light, palette, settings.elek2010_size, &settings.window)
+    fn fill(&self, palette: &Palette, stage: &mut dyn FnMut(&str)) -> Result<All> {
+        let (planet, settings, full, paper) = (self.planet, self.settings, &self.full, &self.paper);
+        let mut all = All::default();
+        for kind in [MediumKind::Paper, MediumKind::Full] {
+            let Some(solution) = self.light(kind) else { continue };
+            for layout in settings.layouts_of(kind) {
+                stage(&format!("{} tables", layout.name()));
+                all.add(layout.fill(&Ingredients { planet, settings, full, paper, solution, palette })?);
             }
-            Solver::Literal { .. } => {
-                crate::layout::elek2010::literal::tables(paper, light, palette, settings)?
-            }
-        };
-        filled.tables.extend(tables);
-        let (groups, _) = compact::groups_to_fold(&self.full, &settings.compact.folded);
-        if !groups.is_empty() {
-            filled.tables.push(extinction::phase(&self.full, palette, elek2010::LAYOUT, &groups));
         }
-        let lost = crate::quality::digits(oddities.aerosol_lost);
-        filled.counts.insert("elek2010 colours outside the gamut, set to 0".into(), json!(oddities.negative));
-        filled.counts.insert(
-            "elek2010 aerosol light lost where the sun is behind the planet, share".into(),
-            json!(lost),
-        );
-        Ok(())
+        if !settings.waters.list.is_empty() {
+            stage("water tables");
+            let (medium, light) = self.best();
+            let mut waters = water::tables(planet, settings, medium, light, palette)?;
+            all.tables.append(&mut waters.tables);
+            all.waters = Some(waters);
+        }
+        Ok(all)
     }
 
     /// The quality report: each layout read back, against direct integration of the media.
-    fn quality(
-        &self,
-        palette: &Palette,
-        filled: &Filled,
-        skies: &Skies,
-        files: &Files,
-    ) -> Map<String, Value> {
+    fn quality(&self, palette: &Palette, filled: &All, skies: &Skies, files: &Files) -> Map<String, Value> {
         let mut out = Map::new();
-        let truth =
-            self.full_light.as_ref().map(|light| report::truths(&self.full, light, &self.settings.window));
-        out.insert("colour".into(), report::colours(palette, truth.as_deref()));
-        if let Some(light) = &self.full_light {
+        let truth = |medium, light: &Solution| judge::truths(medium, light, &self.settings.window);
+        let full = self.full_light.as_ref().map(|light| truth(&self.full, light));
+        out.insert("colour".into(), report::colours(palette, full.as_deref()));
+        if let (Some(light), Some(truth)) = (&self.full_light, &full) {
             out.insert("solver".into(), report::solver(&self.full, light));
+            skies.judge(MediumKind::Full, palette, truth, &mut out);
         }
-        if let (Some(truth), Some(sky)) = (&truth, &skies.compact) {
-            out.insert(Layout::Compact.report_key().into(), report::compact(sky, palette, truth));
-        }
-        if let (Some(truth), Some(sky)) = (&truth, &skies.three_atmosphere) {
-            let errors = report::in_rgb(sky, palette, truth, AerosolPhase::Preset);
-            out.insert(Layout::ThreeAtmosphere.report_key().into(), errors);
-        }
-        if let (Some(light), Some(sky)) = (&self.paper_light, &skies.paper) {
+        if let (Some(light), Some(sky)) = (&self.paper_light, skies.of(elek2010::LAYOUT)) {
             out.insert("paper_medium_solver".into(), report::solver(&self.paper, light));
-            let own = report::truths(&self.paper, light, &self.settings.window);
-            let own = report::in_rgb(sky, palette, &own, AerosolPhase::Isotropic);
-            out.insert(Layout::Elek2010.report_key().into(), own);
-            if let Some(truth) = &truth {
-                let full = report::in_rgb(sky, palette, truth, AerosolPhase::Preset);
+            skies.judge(MediumKind::Paper, palette, &truth(&self.paper, light), &mut out);
+            if let Some(truth) = &full {
+                let full = judge::in_rgb(sky, palette, truth, AerosolPhase::Preset);
                 out.insert("elek2010_against_the_full_medium".into(), full);
             }
         }
@@ -312,42 +267,43 @@ impl<'a> Solved<'a> {
 
 /// The bake as its readers will see it.
 struct Skies {
-    compact: Option<Sky>,
-    paper: Option<Sky>,
-    three_atmosphere: Option<Sky>,
+    /// The most exact first.
+    air: Vec<(&'static dyn Layout, Box<dyn Sky>)>,
     waters: Vec<WaterSky>,
 }
 
 impl Skies {
     fn open(settings: &Settings, manifest: &Manifest, files: &Files) -> Result<Self> {
         let bake = Path::new(IN_MEMORY);
-        let open = |layout: Layout| -> Result<Option<Sky>> {
-            if !settings.layouts.contains(&layout) {
-                return Ok(None);
-            }
-            Sky::new(bake, manifest, layout.name(), &files.named(layout.name())).map(Some)
+        let open = |layout: &'static dyn Layout| {
+            let name = layout.name();
+            Ok((layout, sky::of_pictures(bake, manifest, name, &files.named(name))?))
         };
         let water = |w: &Water| WaterSky::new(bake, manifest, &w.name, &files.named(water::LAYOUT));
+        let baked = layout::ALL.into_iter().filter(|layout| settings.has(layout.name()));
         Ok(Skies {
             waters: settings.waters.list.iter().map(water).collect::<Result<_>>()?,
-            compact: open(Layout::Compact)?,
-            paper: open(Layout::Elek2010)?,
-            three_atmosphere: open(Layout::ThreeAtmosphere)?,
+            air: baked.map(open).collect::<Result<_>>()?,
         })
     }
 
-    /// Skies of the layouts that were baked, the most exact first.
-    fn all(&self) -> Vec<(Layout, &Sky)> {
-        let compact = self.compact.iter().map(|sky| (Layout::Compact, sky));
-        let paper = self.paper.iter().map(|sky| (Layout::Elek2010, sky));
-        compact
-            .chain(paper)
-            .chain(self.three_atmosphere.iter().map(|sky| (Layout::ThreeAtmosphere, sky)))
-            .collect()
+    fn all(&self) -> impl Iterator<Item = (&'static dyn Layout, &dyn Sky)> {
+        self.air.iter().map(|(layout, sky)| (*layout, sky.as_ref()))
     }
 
-    fn best(&self) -> &Sky {
-        self.all().first().expect("a layout was baked").1
+    fn of(&self, layout: &str) -> Option<&dyn Sky> {
+        self.all().find(|(l, _)| l.name() == layout).map(|(_, sky)| sky)
+    }
+
+    fn best(&self) -> &dyn Sky {
+        self.air[0].1.as_ref()
+    }
+
+    /// Adds the errors of the layouts of a medium to a quality report.
+    fn judge(&self, kind: MediumKind, palette: &Palette, truths: &[Truth], out: &mut Map<String, Value>) {
+        for (layout, sky) in self.all().filter(|(layout, _)| layout.medium() == kind) {
+            out.insert(layout.report_key().into(), layout.judge(sky, palette, truths));
+        }
     }
 
     fn named<'a>(&'a self, waters: &'a [Water]) -> Vec<(&'a str, &'a WaterSky)> {

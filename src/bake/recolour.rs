@@ -11,7 +11,7 @@ use crate::files::Atlas;
 use crate::files::manifest::{Manifest, Preset, Tool};
 use crate::layout::compact;
 use crate::layout::shader;
-use crate::layout::sky::Sky;
+use crate::layout::sky;
 use crate::preset::Planet;
 use crate::spectrum::{Beholder, OBSERVER_RANGE, Rgb, Spectrum, planck_law};
 use serde_json::{Map, Value, json};
@@ -70,9 +70,9 @@ pub fn recolour(source: &Source, wanted: &Wanted) -> Result<(Manifest, Vec<Conte
     new.warnings = planet.warnings.clone();
     new.warnings.extend(doubts::colours(&palette));
     let mut made = shader::files(source.folder, &new, compact::LAYOUT)?;
-    let sky = Sky::new(source.folder, &new, compact::LAYOUT, source.tables)?;
+    let sky = sky::of_pictures(source.folder, &new, compact::LAYOUT, source.tables)?;
     let (picture, errors) =
-        pictures::preview(&sky, &planet, &crate::layout::settings::window(&old.settings), &[])?;
+        pictures::preview(sky.as_ref(), &planet, &crate::layout::settings::window(&old.settings), &[])?;
     if errors > 0 {
         new.warnings.push(format!("preview.png: {errors} pixels that no display can show (in magenta)"));
     }

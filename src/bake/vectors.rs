@@ -24,7 +24,7 @@ pub fn points(medium: &Medium, window: &Window) -> Vec<Point> {
 
 /// Path, description and content of a layout's file: a CSV with the columns of points and, for each channel (a
 /// wavelength, or red, green and blue), the light that the air scatters into the view and that with the ground's, 1/sr.
-pub fn file(layout: &str, sky: &Sky, points: &[Point]) -> (String, String, Vec<u8>) {
+pub fn file(layout: &str, sky: &dyn Sky, points: &[Point]) -> (String, String, Vec<u8>) {
     let channels: Vec<String> = match sky.channels() {
         Channels::Wavelengths(nm) => nm.iter().map(|w| format!("{w}nm")).collect(),
         Channels::Rgb => ["red", "green", "blue"].map(String::from).to_vec(),

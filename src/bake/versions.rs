@@ -2,15 +2,15 @@
 //! then (`tests/cli/bytes.rs` holds both), so that a bake of another build is stale when, and only when, its bytes are.
 
 use crate::files::manifest::Tool;
-use crate::layout::settings::{Layout, Settings};
-use crate::layout::{compact, elek2010, three_atmosphere, water};
+use crate::layout::settings::Settings;
+use crate::layout::{self, water};
 use crate::transport;
 use std::collections::BTreeMap;
 
 /// The versions of all that this program can bake: `solver` (with all that every bake shares: spectra, colours, report,
 /// pictures), a layout, `water`.
 pub fn all() -> BTreeMap<String, u32> {
-    let layouts = Layout::ALL.map(|layout| (layout.name(), of_layout(layout)));
+    let layouts = layout::ALL.map(|layout| (layout.name(), layout.version()));
     let rest = [(SOLVER, transport::ALGORITHM_VERSION), (water::LAYOUT, water::ALGORITHM_VERSION)];
     layouts.into_iter().chain(rest).map(|(name, version)| (name.to_string(), version)).collect()
 }
@@ -27,11 +27,3 @@ pub fn tool(settings: &Settings) -> Tool {
 
 /// What is solved before any layout is filled.
 pub const SOLVER: &str = "solver";
-
-fn of_layout(layout: Layout) -> u32 {
-    match layout {
-        Layout::Elek2010 => elek2010::ALGORITHM_VERSION,
-        Layout::Compact => compact::ALGORITHM_VERSION,
-        Layout::ThreeAtmosphere => three_atmosphere::ALGORITHM_VERSION,
-    }
-}

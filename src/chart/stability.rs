@@ -10,8 +10,12 @@ use crate::bake::Lights;
 use crate::error::Result;
 use crate::geometry::Point;
 use crate::geometry::view::View;
+use crate::layout::Layout;
+use crate::layout::compact::CompactLayout;
 use crate::layout::compact::Sizes;
-use crate::layout::settings::{Layout, Settings, Solver};
+use crate::layout::elek2010::Elek2010Layout;
+use crate::layout::settings::{Settings, Solver};
+use crate::layout::three_atmosphere::ThreeAtmosphereLayout;
 use crate::medium::Role;
 use crate::methods::{
     BakedTables, Elek2009, Family, Method, Nishita, OneilMarch, PreparedSky, Schafhitzel, Storage,
@@ -169,7 +173,7 @@ pub type Shared = Arc<Lights>;
 
 /// One of each family, small.
 fn methods(settings: &Settings, lights: &Arc<Lights>) -> Vec<Box<dyn Method>> {
-    let baked = |family, layout, settings: Settings, storage| -> Box<dyn Method> {
+    let baked = |family, layout: &'static dyn Layout, settings: Settings, storage| -> Box<dyn Method> {
         Box::new(BakedTables {
             family,
             setting: String::new(),
@@ -190,10 +194,10 @@ fn methods(settings: &Settings, lights: &Arc<Lights>) -> Vec<Box<dyn Method>> {
         Box::new(OneilMarch { steps: 40, size: [128, 128] }),
         Box::new(Schafhitzel { size: [64; 3] }),
         Box::new(Elek2009 { size: [16, 48, 24] }),
-        baked(Family::Algorithm1, Layout::Elek2010, literal, Storage::AsBaked),
-        baked(Family::Bruneton2017, Layout::ThreeAtmosphere, Settings::default(), Storage::RedOfMie),
-        baked(Family::Elek2010, Layout::Elek2010, settings.clone(), Storage::AsBaked),
-        baked(Family::Compact, Layout::Compact, settings.clone(), Storage::AsBaked),
+        baked(Family::Algorithm1, &Elek2010Layout, literal, Storage::AsBaked),
+        baked(Family::Bruneton2017, &ThreeAtmosphereLayout, Settings::default(), Storage::RedOfMie),
+        baked(Family::Elek2010, &Elek2010Layout, settings.clone(), Storage::AsBaked),
+        baked(Family::Compact, &CompactLayout, settings.clone(), Storage::AsBaked),
     ]
 }
 

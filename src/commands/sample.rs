@@ -8,7 +8,7 @@ use crate::files::manifest::Manifest;
 use crate::files::points::{Answer, read_points, write_answers};
 use crate::geometry::Point;
 use crate::geometry::view::View;
-use crate::layout::sky::{AerosolPhase, Channels, Component, Sky};
+use crate::layout::sky::{self, AerosolPhase, Channels, Component, Sky};
 use crate::machine::memory;
 use crate::medium::Medium;
 use crate::preset::Planet;
@@ -86,8 +86,8 @@ pub fn run(args: &Args) -> Result<()> {
         let light = with_threads(args.threads, || exact(args, &medium, baked, &points))?;
         stream(|out| spectral(out, args, &planet, &points, &nm, &light))
     } else {
-        let sky = Sky::open(&args.bake, &manifest, &layout(args, &manifest)?)?;
-        refuse_outside(&args.points, &points, &sky)?;
+        let sky = sky::open(&args.bake, &manifest, &layout(args, &manifest)?)?;
+        refuse_outside(&args.points, &points, sky.as_ref())?;
         let ask = |p: &Point| sky.radiance(p, args.component, AerosolPhase::Preset);
         let light: Vec<Vec<f64>> = with_threads(args.threads, || points.iter().map(ask).collect())?;
         if light.iter().flatten().any(|v| !v.is_finite()) {
@@ -117,7 +117,7 @@ pub(super) fn fits(args: &Args, points: usize, wavelengths: usize) -> Result<()>
 }
 
 /// Views that tables of a window do not hold are refused, not answered by the nearest.
-fn refuse_outside(file: &Path, points: &[Point], sky: &Sky) -> Result<()> {
+fn refuse_outside(file: &Path, points: &[Point], sky: &dyn Sky) -> Result<()> {
     for (k, point) in points.iter().enumerate() {
         if let Some((key, value, reason)) = sky.outside(point) {
             return Err(Error::Value {

@@ -12,8 +12,13 @@ mod layer;
 pub mod lookup;
 
 use super::extinction::{Held, Matter, channels, phase, table};
+use super::judge::{Truth, in_spectra};
+use super::settings::Settings;
+use super::sky::{Sky, Source};
 use super::table_data::{Baked, axes_of, axis, file_order};
+use super::{Filled, Ingredients, Layout, MediumKind};
 use crate::colour::weights::Palette;
+use crate::error::Result;
 use crate::files::manifest::Encoding;
 use crate::mapping::{Bends, Elek2010, Layer, SunCurve, Window};
 use crate::medium::Medium;
@@ -21,6 +26,7 @@ use crate::transport::fill::Wanted;
 use crate::transport::solve::Solution;
 use fill::{Over, fill};
 use rayon::prelude::*;
+use serde_json::{Value, json};
 
 /// Name of the layout and of its folder.
 pub const LAYOUT: &str = "compact";
@@ -304,5 +310,64 @@ fn irradiance(solution: &Solution, palette: &Palette, mapping: &Elek2010) -> Bak
         channels: channels(palette, "diffuse irradiance of the ground over solar irradiance", "1"),
         encoding: Encoding::log(1.0, 0.0, FLOOR),
         texels,
+    }
+}
+
+/// Spectral radiance at four wavelengths.
+pub struct CompactLayout;
+
+impl Layout for CompactLayout {
+    fn name(&self) -> &'static str {
+        LAYOUT
+    }
+
+    fn version(&self) -> u32 {
+        ALGORITHM_VERSION
+    }
+
+    fn medium(&self) -> MediumKind {
+        MediumKind::Full
+    }
+
+    fn mappings(&self, medium: &Medium, settings: &Settings) -> Vec<Elek2010> {
+        let sizes = settings.compact.sizes;
+        let tables = [(Kind::Single, sizes.single), (Kind::Multiple, sizes.multiple)];
+        tables.iter().filter_map(|&(kind, size)| mapping(medium, kind, size, &settings.window)).collect()
+    }
+
+    fn texels(&self, medium: &Medium, settings: &Settings) -> usize {
+        let sizes = settings.compact.sizes;
+        let [multiple, single] = [sizes.multiple, sizes.single].map(|size| size.iter().product::<usize>());
+        multiple + single * groups(medium).len()
+    }
+
+    fn fill(&self, from: &Ingredients) -> Result<Filled> {
+        let maker = Maker {
+            medium: from.full,
+            solution: from.solution,
+            palette: from.palette,
+            design: &from.settings.compact,
+            window: &from.settings.window,
+        };
+        let (tables, negative) = tables(&maker);
+        let mut filled = Filled { tables, ..Filled::default() };
+        filled.counts.insert("compact multiple scattering below 0, set to dark".into(), json!(negative));
+        Ok(filled)
+    }
+
+    fn open(&self, source: &Source) -> Result<Box<dyn Sky>> {
+        Ok(Box::new(lookup::Compact::new(source)?))
+    }
+
+    fn report_key(&self) -> &'static str {
+        "compact_against_direct_integration"
+    }
+
+    fn judge(&self, sky: &dyn Sky, palette: &Palette, truths: &[Truth]) -> Value {
+        in_spectra(sky, palette, truths)
+    }
+
+    fn remedy(&self) -> &'static str {
+        "--size takes larger tables"
     }
 }

@@ -8,9 +8,16 @@ pub mod literal;
 pub mod lookup;
 pub mod spectral;
 
+use super::compact;
+use super::extinction;
 use super::extinction::{Held, Matter, table};
+use super::judge::{Truth, in_rgb};
+use super::settings::{Settings, Solver};
+use super::sky::{AerosolPhase, Sky, Source};
 use super::table_data::{Baked, Channel, axes_of, axis, file_order};
+use super::{Filled, Ingredients, Layout, MediumKind};
 use crate::colour::weights::Palette;
+use crate::error::Result;
 use crate::files::manifest::{Axis, Encoding};
 use crate::machine::lanes::Lanes;
 use crate::mapping::{Bends, Elek2010, SunCurve, Views, Window};
@@ -19,6 +26,7 @@ use crate::transport::Phase;
 use crate::transport::fill::{Painter, RayLight, SunPairs, Wanted};
 use crate::transport::solve::{Batch, Solution};
 use rayon::prelude::*;
+use serde_json::{Value, json};
 use std::f64::consts::PI;
 
 /// Name of the layout and of its folder.
@@ -290,5 +298,64 @@ fn irradiance(values: Vec<[f64; 3]>, mapping: &Elek2010) -> Baked {
         channels: vec![channel("R"), channel("G"), channel("B")],
         encoding: Encoding::linear(1.0 / scale),
         texels: values.iter().map(|v| [store(v[0]), store(v[1]), store(v[2]), 0.0]).collect(),
+    }
+}
+
+/// The paper's layout: one table of colour over four axes.
+pub struct Elek2010Layout;
+
+impl Layout for Elek2010Layout {
+    fn name(&self) -> &'static str {
+        LAYOUT
+    }
+
+    fn version(&self) -> u32 {
+        ALGORITHM_VERSION
+    }
+
+    fn medium(&self) -> MediumKind {
+        MediumKind::Paper
+    }
+
+    fn mappings(&self, medium: &Medium, settings: &Settings) -> Vec<Elek2010> {
+        mapping(medium, settings.elek2010_size, &settings.window).into_iter().collect()
+    }
+
+    fn texels(&self, _: &Medium, settings: &Settings) -> usize {
+        settings.elek2010_size.iter().product()
+    }
+
+    fn fill(&self, from: &Ingredients) -> Result<Filled> {
+        let Ingredients { paper, solution, palette, settings, .. } = *from;
+        let (mut tables, oddities) = match settings.solver {
+            Solver::Moments => tables(paper, solution, palette, settings.elek2010_size, &settings.window),
+            Solver::Literal { .. } => literal::tables(paper, solution, palette, settings)?,
+        };
+        let (groups, _) = compact::groups_to_fold(from.full, &settings.compact.folded);
+        if !groups.is_empty() {
+            tables.push(extinction::phase(from.full, palette, LAYOUT, &groups));
+        }
+        let mut filled = Filled { tables, ..Filled::default() };
+        let mut count = |what: &str, value: Value| filled.counts.insert(what.into(), value);
+        count("elek2010 colours outside the gamut, set to 0", json!(oddities.negative));
+        let lost = crate::quality::digits(oddities.aerosol_lost);
+        count("elek2010 aerosol light lost where the sun is behind the planet, share", json!(lost));
+        Ok(filled)
+    }
+
+    fn open(&self, source: &Source) -> Result<Box<dyn Sky>> {
+        Ok(Box::new(lookup::Elek2010Sky::new(source)?))
+    }
+
+    fn report_key(&self) -> &'static str {
+        "elek2010_against_its_own_medium"
+    }
+
+    fn judge(&self, sky: &dyn Sky, palette: &Palette, truths: &[Truth]) -> Value {
+        in_rgb(sky, palette, truths, AerosolPhase::Isotropic)
+    }
+
+    fn remedy(&self) -> &'static str {
+        "--size takes larger tables, and layout compact errs less"
     }
 }

@@ -1,7 +1,9 @@
 //! What a bake is asked for, apart from the planet: everything that decides its bytes.
 
-use super::compact::{Design, Sizes};
+use super::compact::{self, CompactLayout, Design, Sizes};
+use super::elek2010::{self, Elek2010Layout};
 use super::water::Waters;
+use super::{Layout, MediumKind};
 use crate::algorithm1::Gather;
 use crate::files::container::Container;
 use crate::mapping::{Elek2010, Views, Window};
@@ -9,37 +11,6 @@ use crate::spectrum::{ColourSpace, Rgb, White};
 use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
 use serde_json::{Value, json};
-
-/// A way to store a sky.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
-pub enum Layout {
-    Elek2010,
-    Compact,
-    /// Files of the npm package @takram/three-atmosphere
-    ThreeAtmosphere,
-}
-
-impl Layout {
-    /// Every layout, in the order of reports.
-    pub const ALL: [Layout; 3] = [Layout::Compact, Layout::Elek2010, Layout::ThreeAtmosphere];
-
-    /// Key of the quality report under which its tables stand against the truth of their own medium, by region.
-    pub fn report_key(self) -> &'static str {
-        match self {
-            Layout::Elek2010 => "elek2010_against_its_own_medium",
-            Layout::Compact => "compact_against_direct_integration",
-            Layout::ThreeAtmosphere => "three_atmosphere_against_direct_integration",
-        }
-    }
-
-    pub fn name(self) -> &'static str {
-        match self {
-            Layout::Elek2010 => super::elek2010::LAYOUT,
-            Layout::Compact => super::compact::LAYOUT,
-            Layout::ThreeAtmosphere => super::three_atmosphere::LAYOUT,
-        }
-    }
-}
 
 /// Who sums the orders for the paper's layout.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +39,7 @@ impl Storage {
 /// Settings of a bake.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    pub layouts: Vec<Layout>,
+    pub layouts: Vec<&'static dyn Layout>,
     pub elek2010_size: [usize; 4],
     pub compact: Design,
     /// The part of altitudes, suns and views that the tables hold, of both layouts.
@@ -92,7 +63,7 @@ pub const WAVELENGTHS: usize = 15;
 impl Default for Settings {
     fn default() -> Self {
         Settings {
-            layouts: vec![Layout::Elek2010, Layout::Compact],
+            layouts: vec![&Elek2010Layout, &CompactLayout],
             elek2010_size: Elek2010::PAPER_SIZE,
             compact: Design::default(),
             window: Window::WHOLE,
@@ -109,6 +80,16 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// Whether a layout is to be written.
+    pub fn has(&self, layout: &str) -> bool {
+        self.layouts.iter().any(|l| l.name() == layout)
+    }
+
+    /// The layouts whose tables hold the light of a medium.
+    pub fn layouts_of(&self, medium: MediumKind) -> impl Iterator<Item = &'static dyn Layout> {
+        self.layouts.iter().copied().filter(move |l| l.medium() == medium)
+    }
+
     /// For the manifest.
     pub fn json(&self) -> Value {
         let orders = match self.orders {
@@ -146,10 +127,10 @@ impl Settings {
         let design = &self.compact;
         let window = &self.window;
         let mut add = |key: &str, value: Value| out[key] = value;
-        if self.layouts.contains(&Layout::Elek2010) {
+        if self.has(elek2010::LAYOUT) {
             add("elek2010_size", json!(self.elek2010_size));
         }
-        if self.layouts.contains(&Layout::Compact) {
+        if self.has(compact::LAYOUT) {
             add("compact_single_size", json!(design.sizes.single));
             add("compact_multiple_size", json!(design.sizes.multiple));
         }

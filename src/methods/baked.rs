@@ -7,8 +7,10 @@ use crate::files::manifest::{Encoding, EncodingKind, Manifest, Table};
 use crate::files::{Atlas, Samples, exr};
 use crate::geometry::Point;
 use crate::geometry::view::View;
-use crate::layout::settings::{Layout, Settings};
-use crate::layout::sky::{Component, Sky};
+use crate::layout::Layout;
+use crate::layout::settings::Settings;
+use crate::layout::sky::{self, Component, Sky};
+use crate::layout::three_atmosphere::lookup::ThreeAtmosphere;
 use crate::machine::cpu_time::cpu_time;
 use crate::preset::Planet;
 use std::collections::BTreeMap;
@@ -20,7 +22,7 @@ use std::time::Duration;
 pub struct BakedTables {
     pub family: Family,
     pub setting: String,
-    pub layout: Layout,
+    pub layout: &'static dyn Layout,
     pub settings: Settings,
     pub storage: Storage,
     /// Shared with others that may want the same light.
@@ -93,7 +95,7 @@ impl Watch {
 }
 
 struct Tables {
-    sky: Sky,
+    sky: Box<dyn Sky>,
     bytes: usize,
     sky_fetches: usize,
     ground_fetches: usize,
@@ -112,10 +114,14 @@ impl Tables {
             store(table, &mut atlas, storage);
             pictures.insert(table.name.clone(), atlas);
         }
-        let mut sky = Sky::new(Path::new("the bake in memory"), &manifest, layout, &pictures)?;
-        if let (Sky::ThreeAtmosphere(found), Storage::RedOfMie) = (&mut sky, storage) {
-            found.guess_mie(mie_over_rayleigh(&product)?);
-        }
+        let bake = Path::new("the bake in memory");
+        let sky: Box<dyn Sky> = match storage {
+            Storage::RedOfMie => {
+                let ratio = mie_over_rayleigh(&product)?;
+                Box::new(ThreeAtmosphere::with_red_alone(bake, &manifest, &pictures, ratio)?)
+            }
+            _ => sky::of_pictures(bake, &manifest, layout, &pictures)?,
+        };
         let (sky_fetches, ground_fetches) = fetches(&manifest, layout, storage);
         let constant = |name: &str| manifest.constants[name][0];
         Ok(Tables {

@@ -3,8 +3,11 @@
 use super::{BakedTables, Elek2009, Family, Method, Nishita, OneilMarch, Schafhitzel, Storage};
 use crate::algorithm1::Gather;
 use crate::bake::Lights;
+use crate::layout::compact::CompactLayout;
 use crate::layout::compact::Sizes;
-use crate::layout::settings::{Layout, Settings, Solver};
+use crate::layout::elek2010::Elek2010Layout;
+use crate::layout::settings::{Settings, Solver};
+use crate::layout::three_atmosphere::ThreeAtmosphereLayout;
 use crate::spectrum::grid;
 use crate::transport::solve::Orders;
 use std::sync::Arc;
@@ -48,7 +51,7 @@ fn algorithm_1(lights: &Arc<Lights>) -> Vec<BakedTables> {
     let of = |size: [usize; 4], samples, orders, gather, about: &str| BakedTables {
         family: Family::Algorithm1,
         setting: format!("{}, {samples} samples, {orders} orders, {about}", size_of(size)),
-        layout: Layout::Elek2010,
+        layout: &Elek2010Layout,
         settings: Settings {
             elek2010_size: size,
             orders: Orders::First(orders),
@@ -73,7 +76,7 @@ fn bruneton(lights: &Arc<Lights>) -> Vec<BakedTables> {
     let of = |setting: &str, storage| BakedTables {
         family: Family::Bruneton2017,
         setting: setting.into(),
-        layout: Layout::ThreeAtmosphere,
+        layout: &ThreeAtmosphereLayout,
         settings: Settings::default(),
         storage,
         lights: lights.clone(),
@@ -88,7 +91,7 @@ fn elek2010(lights: &Arc<Lights>) -> Vec<BakedTables> {
     let of = |size: [usize; 4], orders: Orders, wavelengths: usize, about: &str| BakedTables {
         family: Family::Elek2010,
         setting: format!("{}{about}", size_of(size)),
-        layout: Layout::Elek2010,
+        layout: &Elek2010Layout,
         settings: Settings {
             elek2010_size: size,
             orders,
@@ -122,7 +125,7 @@ fn compact(lights: &Arc<Lights>) -> Vec<BakedTables> {
             size_of(settings.compact.sizes.single),
             size_of(settings.compact.sizes.multiple)
         ),
-        layout: Layout::Compact,
+        layout: &CompactLayout,
         settings,
         storage,
         lights: lights.clone(),

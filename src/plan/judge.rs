@@ -150,7 +150,7 @@ impl Judge {
     }
 
     /// Errors of a sky.
-    pub fn errors(&self, sky: &Sky) -> Errors {
+    pub fn errors(&self, sky: &dyn Sky) -> Errors {
         let (to_xyz, from_xyz) = (self.space.to_xyz(), self.space.from_xyz());
         let one = |(look, truth): (&Look, &[f64; 3])| {
             let mut rgb = [0.0; 3];

@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::layout::compact;
 use crate::layout::compact::Maker;
 use crate::layout::settings::Settings;
-use crate::layout::sky::Sky;
+use crate::layout::sky::{self, Sky};
 use crate::layout::table_data::Baked;
 use crate::mapping::Window;
 use crate::medium::Medium;
@@ -111,7 +111,7 @@ impl<'a> Lab<'a> {
     }
 
     /// The sky that a model's bake would answer with.
-    pub fn sky(&mut self, model: &Model) -> Result<Sky> {
+    pub fn sky(&mut self, model: &Model) -> Result<Box<dyn Sky>> {
         self.measured += 1;
         let light = self.light(model)?;
         let palette = self.palette(light, &model.window)?;
@@ -135,12 +135,12 @@ impl<'a> Lab<'a> {
         let manifest = describe::manifest(self.planet, &settings, &palette, &medium, &files);
         self.lights.push(Light { orders, medium, solution, palettes });
         let name = compact::LAYOUT;
-        Sky::new(Path::new("the model"), &manifest, name, &files.named(name))
+        sky::of_pictures(Path::new("the model"), &manifest, name, &files.named(name))
     }
 
     /// How a model does on some views.
     pub fn measure(&mut self, model: &Model, judge: &Judge) -> Result<Errors> {
-        Ok(judge.errors(&self.sky(model)?))
+        Ok(judge.errors(self.sky(model)?.as_ref()))
     }
 
     /// Forgets tables, so that filling them again can be timed.

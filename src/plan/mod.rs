@@ -165,7 +165,7 @@ fn measured(lab: &mut Lab, model: &Model, judge: &Judge, clock: &dyn Fn() -> f64
     let solved = clock();
     let sky = lab.sky(model)?;
     let filled = clock();
-    let errors = judge.errors(&sky);
+    let errors = judge.errors(sky.as_ref());
     Ok(Measured { model: model.clone(), cost, errors, seconds: [solved - start, filled - solved] })
 }
 

@@ -1,9 +1,10 @@
 //! A model that the planner may choose: settings of a bake of the layout `compact`, and what it costs to keep and to
 //! look up.
 
+use crate::layout::compact::CompactLayout;
 use crate::layout::compact::{Design, IRRADIANCE_SIZE, groups_to_fold};
 use crate::layout::extinction::PHASE_SIZE;
-use crate::layout::settings::{Layout, Settings, TOLERANCE, WAVELENGTHS};
+use crate::layout::settings::{Settings, TOLERANCE, WAVELENGTHS};
 use crate::mapping::{Views, Window};
 use crate::medium::Medium;
 use crate::spectrum::grid;
@@ -47,7 +48,7 @@ impl Model {
     /// Settings of the bake; `base` has all that models do not decide.
     pub fn settings(&self, base: &Settings) -> Settings {
         Settings {
-            layouts: vec![Layout::Compact],
+            layouts: vec![&CompactLayout],
             compact: self.design.clone(),
             window: self.window,
             orders: self.orders,

@@ -9,7 +9,7 @@ use crate::files::bounded_read::MOST_JSON;
 use std::path::Path;
 
 /// Layouts, which are taken for presets where a comma is missing in a list of them.
-const LAYOUTS: [&str; 3] = ["elek2010", "compact", "three-atmosphere"];
+const LAYOUTS: [&str; 3] = ["compact", "elek2010", "three-atmosphere"];
 
 /// File name for messages, and the text.
 ///
@@ -105,13 +105,11 @@ fn of_another_kind(name: &str) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::ValueEnum;
 
     /// Every layout is known by its name where it is given as a preset.
     #[test]
     fn no_layout_is_left_out() {
-        let all: Vec<&str> =
-            crate::layout::settings::Layout::value_variants().iter().map(|l| l.name()).collect();
+        let all = crate::layout::ALL.map(|layout| layout.name());
         assert_eq!(all, LAYOUTS);
     }
 

@@ -11,7 +11,7 @@ use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use tyndall::bake::versions;
-use tyndall::layout::settings::Layout;
+use tyndall::layout;
 
 /// Which bakes: what each holds that no other does. Their options come after those of [`SMALL`].
 const BAKES: [(&str, &str, &str); 13] = [
@@ -116,7 +116,7 @@ fn changed(old: &Hashes, new: &Hashes) -> BTreeMap<String, BTreeSet<String>> {
             found.entry(algorithm.into()).or_default().insert(name.clone());
         }
     }
-    if Layout::ALL.iter().all(|layout| found.contains_key(layout.name())) {
+    if layout::ALL.iter().all(|layout| found.contains_key(layout.name())) {
         let bakes = std::mem::take(&mut found).into_values().flatten().collect();
         found.insert(versions::SOLVER.into(), bakes);
     }

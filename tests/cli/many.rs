@@ -141,7 +141,8 @@ fn talk_of_memory() {
 #[cfg(target_os = "linux")]
 #[test]
 fn the_estimate_of_memory() {
-    use tyndall::layout::settings::{Layout, Settings};
+    use tyndall::layout::elek2010::Elek2010Layout;
+    use tyndall::layout::settings::Settings;
     let dir = tempfile::tempdir().unwrap();
     for (text, size) in [("32x128x32x8", [32, 128, 32, 8]), ("48x128x48x8", [48, 128, 48, 8])] {
         let mut command = command();
@@ -151,7 +152,7 @@ fn the_estimate_of_memory() {
         let peak = done.out.split("peak memory ").nth(1).unwrap().split(' ').next().unwrap();
         let peak = 1e6 * peak.parse::<f64>().unwrap();
         let settings =
-            Settings { layouts: vec![Layout::Elek2010], elek2010_size: size, ..Settings::default() };
+            Settings { layouts: vec![&Elek2010Layout], elek2010_size: size, ..Settings::default() };
         let planet = tyndall::preset::load("earth-paper", &[]).unwrap();
         let ratio = tyndall::bake::memory::estimate(&planet, &settings) as f64 / peak;
         assert!((0.9..2.0).contains(&ratio), "{text}: estimate over {peak} bytes is {ratio}");

@@ -5,9 +5,10 @@ use tyndall::bake::bake;
 use tyndall::files::exr::from_exr_bytes;
 use tyndall::geometry::Point;
 use tyndall::geometry::view::View;
+use tyndall::layout::compact::CompactLayout;
 use tyndall::layout::compact::Sizes;
-use tyndall::layout::settings::{Layout, Settings};
-use tyndall::layout::sky::{AerosolPhase, Channels, Component, Sky};
+use tyndall::layout::settings::Settings;
+use tyndall::layout::sky::{self, AerosolPhase, Channels, Component, Sky};
 use tyndall::medium::DensityProfile;
 use tyndall::preset::{self, Planet};
 use tyndall::quality::Distribution;
@@ -65,9 +66,9 @@ fn light_of_a_cloud_is_there_up_to_its_edge() {
 }
 
 /// The sky of a bake of few altitudes, and the wavelengths that it answers at.
-fn small_tables(planet: &Planet, wavelengths: usize) -> (Sky, Vec<f64>) {
+fn small_tables(planet: &Planet, wavelengths: usize) -> (Box<dyn Sky>, Vec<f64>) {
     let settings = Settings {
-        layouts: vec![Layout::Compact],
+        layouts: vec![&CompactLayout],
         compact: Sizes { single: [17, 20, 12, 4], multiple: [17, 20, 12, 4], ..Sizes::default() }.into(),
         wavelengths_nm: grid(wavelengths),
         ..Settings::default()
@@ -77,7 +78,7 @@ fn small_tables(planet: &Planet, wavelengths: usize) -> (Sky, Vec<f64>) {
     let open = |name: &str| &product.files.iter().find(|f| f.0 == name).unwrap().1;
     let tables = product.manifest.tables.iter().filter(|t| t.layout == "compact");
     let pictures = tables.map(|t| (t.name.clone(), from_exr_bytes(place, open(&t.file)).unwrap())).collect();
-    let sky = Sky::new(place, &product.manifest, "compact", &pictures).unwrap();
+    let sky = sky::of_pictures(place, &product.manifest, "compact", &pictures).unwrap();
     let Channels::Wavelengths(nm) = sky.channels() else { panic!("compact holds wavelengths") };
     (sky, nm)
 }

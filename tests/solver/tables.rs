@@ -6,7 +6,7 @@ use tyndall::bake::bake;
 use tyndall::geometry::Point;
 use tyndall::geometry::view::View;
 use tyndall::layout::settings::Settings;
-use tyndall::layout::sky::{AerosolPhase, Component, Sky};
+use tyndall::layout::sky::{self, AerosolPhase, Component, Sky};
 use tyndall::preset;
 use tyndall::quality::{Distribution, REGIONS, relative_errors, views};
 use tyndall::spectrum::grid;
@@ -29,7 +29,7 @@ const COMPACT: [(&str, f64, f64); 5] = [
 const VIEWS: usize = 500;
 
 struct Baked {
-    sky: Sky,
+    sky: Box<dyn Sky>,
     quality: Value,
 }
 
@@ -44,7 +44,7 @@ fn baked(name: &str) -> Baked {
         std::fs::create_dir_all(file.parent().unwrap_or(Path::new("."))).expect("a folder");
         std::fs::write(file, bytes).expect("a file");
     }
-    let sky = Sky::open(folder.path(), &product.manifest, "compact").expect("tables");
+    let sky = sky::open(folder.path(), &product.manifest, "compact").expect("tables");
     Baked { sky, quality: product.manifest.quality }
 }
 

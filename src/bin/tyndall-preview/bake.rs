@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use tyndall::files::manifest::{Manifest, Table};
 use tyndall::files::{Atlas, Samples};
-use tyndall::layout::sky::Sky;
-use tyndall::layout::{shader, sky};
+use tyndall::layout::shader;
+use tyndall::layout::sky::{self, Sky};
 use tyndall::{Error, Result};
 
 /// The layouts that there are shaders for.
@@ -86,7 +86,7 @@ pub struct Bake {
     pub irradiance: Texels,
     pub phase: Texels,
     /// The same look-ups in double precision, for exposure.
-    pub sky: Sky,
+    pub sky: Box<dyn Sky>,
     /// What is drawn where the ground is; none: land.
     pub water: Option<Water>,
 }
@@ -109,7 +109,7 @@ impl Bake {
             None => return Err(Error::file(folder, "no layout in this bake that the preview can draw")),
         };
         let pictures = sky::pictures(folder, &manifest, layout.name())?;
-        let sky = Sky::new(folder, &manifest, layout.name(), &pictures)?;
+        let sky = sky::of_pictures(folder, &manifest, layout.name(), &pictures)?;
         Reader { folder, manifest: &manifest, layout, pictures: &pictures }.bake(sky)
     }
 
@@ -154,7 +154,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn bake(&self, sky: Sky) -> Result<Bake> {
+    fn bake(&self, sky: Box<dyn Sky>) -> Result<Bake> {
         let constants = shader::Constants::new(self.manifest, self.layout.name());
         let constants = constants.map_err(|reason| Error::file(self.folder, reason))?;
         Ok(Bake {

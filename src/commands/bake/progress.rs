@@ -1,6 +1,6 @@
 //! How bakes get on: a bar each on a terminal, a line at begin and end elsewhere; and the times of their stages.
 
-use crate::layout::settings::{Layout, Settings};
+use crate::layout::settings::Settings;
 use crate::machine::cpu_time::cpu_time;
 use crate::machine::output;
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
@@ -67,9 +67,8 @@ impl Progress {
 /// Number of stages of a bake: what its bar counts.
 pub fn stages(settings: &Settings) -> usize {
     const ALWAYS: usize = 8;
-    let has = |layout| usize::from(settings.layouts.contains(&layout));
     let waters = usize::from(!settings.waters.list.is_empty());
-    ALWAYS + has(Layout::Elek2010) + has(Layout::Compact) + has(Layout::ThreeAtmosphere) + waters
+    ALWAYS + settings.layouts.len() + waters
 }
 
 /// Times the stages of one bake and moves its bar.

@@ -7,8 +7,9 @@ use super::window::{Sized, fitted};
 use crate::algorithm1::Gather;
 use crate::error::{Error, Result};
 use crate::files::container::Container;
-use crate::layout::settings::{Layout, Settings, Solver, Storage};
+use crate::layout::settings::{Settings, Solver, Storage};
 use crate::layout::water::Waters;
+use crate::layout::{self, Layout, MediumKind, compact, elek2010};
 use crate::mapping::{Views, Window};
 use crate::plan::{Effort, plan};
 use crate::preset::names;
@@ -63,9 +64,10 @@ pub fn planned(
 
 /// The settings that hold for every preset of the run, and which sizes were asked for.
 pub fn settings(args: &Args) -> Result<(Settings, Sized)> {
-    let mut layouts = args.layout.clone();
-    layouts.sort();
-    layouts.dedup();
+    // In the order of the list, each once; those of the paper's medium first.
+    let asked = |layout: &&'static dyn Layout| args.layout.iter().any(|name| name == layout.name());
+    let mut layouts: Vec<&'static dyn Layout> = layout::ALL.into_iter().filter(asked).collect();
+    layouts.sort_by_key(|layout| layout.medium() != MediumKind::Paper);
     let wavelengths_nm = wavelengths(&args.wavelengths)
         .map_err(|reason| Error::Argument(format!("--wavelengths {}: {reason}", args.wavelengths)))?;
     let literal = args.solver == "literal";
@@ -96,7 +98,7 @@ pub fn settings(args: &Args) -> Result<(Settings, Sized)> {
     if literal && matches!(args.orders, Orders::Converged { .. }) {
         return Err(Error::Argument("--solver literal sums orders one by one: give --orders N".into()));
     }
-    let without_paper = !settings.layouts.contains(&Layout::Elek2010);
+    let without_paper = !settings.has(elek2010::LAYOUT);
     for (option, given) in [("--solver literal", literal), ("--spectral", args.spectral)] {
         if given && without_paper {
             return Err(Error::Argument(format!(
@@ -106,7 +108,7 @@ pub fn settings(args: &Args) -> Result<(Settings, Sized)> {
     }
     let mut sized = Sized::default();
     for text in &args.size {
-        let (name, size) = text.split_once('=').unwrap_or((Layout::Elek2010.name(), text));
+        let (name, size) = text.split_once('=').unwrap_or((elek2010::LAYOUT, text));
         if name == "water" {
             settings.waters.size = water_size(size).ok_or_else(|| {
                 Error::Argument(format!(
@@ -165,10 +167,11 @@ fn refuse_parts(args: &Args, settings: &Settings) -> Result<()> {
     if windowed && args.spectral {
         return refuse("--spectral is of whole tables: leave --altitudes, --suns and --views out");
     }
-    if windowed && args.layout.contains(&Layout::ThreeAtmosphere) {
-        return refuse("three-atmosphere has whole tables: leave --altitudes, --suns and --views out");
+    if let Some(whole) = settings.layouts.iter().find(|layout| windowed && !layout.has_windows()) {
+        let name = whole.name();
+        return refuse(&format!("{name} has whole tables: leave --altitudes, --suns and --views out"));
     }
-    let compact = args.layout.contains(&Layout::Compact);
+    let compact = settings.has(compact::LAYOUT);
     for (option, given) in [("--fold", !args.fold.is_empty()), ("--without", args.without.is_some())] {
         if given && !compact {
             let reason = format!("{option} is of the layout compact, which --layout leaves out");

@@ -3,7 +3,8 @@
 use super::super::text::print;
 use super::progress::Stage;
 use crate::error::{Error, Result};
-use crate::layout::settings::Layout;
+use crate::layout::settings::Settings;
+use crate::layout::{self, Layout};
 use crate::machine::memory;
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;
@@ -55,7 +56,7 @@ impl Done {
             }
         };
         let regions = |key: &str| self.quality.get(key).and_then(Value::as_object).into_iter().flatten();
-        for layout in Layout::ALL {
+        for layout in layout::ALL {
             let found = |(region, found): (&String, &Value)| {
                 look(layout.name(), region, found.get("per_wavelength").unwrap_or(found));
             };
@@ -70,7 +71,7 @@ impl Done {
     }
 
     /// Error of a layout's tables by day, below which 95 % of the report's views lie.
-    fn by_day(&self, layout: Layout) -> Option<f64> {
+    fn by_day(&self, layout: &dyn Layout) -> Option<f64> {
         let found = &self.quality.get(layout.report_key())?["day"];
         found.get("per_wavelength").unwrap_or(found)["p95"].as_f64()
     }
@@ -186,21 +187,21 @@ fn table(outcomes: &[Outcome]) -> String {
 }
 
 /// Layouts that have a column: the two of a bake that asks for none, and whichever a bake has.
-fn shown(outcomes: &[Outcome]) -> Vec<Layout> {
-    let usual = [Layout::Compact, Layout::Elek2010];
+fn shown(outcomes: &[Outcome]) -> Vec<&'static dyn Layout> {
+    let usual = Settings::default();
     let bakes = || outcomes.iter().filter_map(|o| o.result.as_ref().ok());
-    let has = |layout: &Layout| bakes().any(|done| done.by_day(*layout).is_some());
-    Layout::ALL.into_iter().filter(|layout| usual.contains(layout) || has(layout)).collect()
+    let has = |layout: &dyn Layout| bakes().any(|done| done.by_day(layout).is_some());
+    layout::ALL.into_iter().filter(|layout| usual.has(layout.name()) || has(*layout)).collect()
 }
 
 /// A cell below the name of a layout.
-fn cell(layout: Layout, text: &str) -> String {
+fn cell(layout: &dyn Layout, text: &str) -> String {
     let width = layout.name().len().max(8);
     format!("{text:>width$}  ")
 }
 
-fn row(done: &Done, layouts: &[Layout]) -> String {
-    let of = |layout: &Layout| cell(*layout, &done.by_day(*layout).map_or("-".into(), percent));
+fn row(done: &Done, layouts: &[&dyn Layout]) -> String {
+    let of = |layout: &&dyn Layout| cell(*layout, &done.by_day(*layout).map_or("-".into(), percent));
     let errors: String = layouts.iter().map(of).collect();
     let balance = done.balance().map_or("-".into(), |b| format!("{:+.3} %", 100.0 * b));
     let megabytes = done.bytes as f64 / 1e6;
@@ -236,10 +237,11 @@ pub fn failure(outcomes: Vec<Outcome>) -> Result<()> {
 mod tests {
     use super::*;
 
-    fn done(layout: Layout) -> Done {
-        let error = match layout {
-            Layout::Compact => json!({ "day": { "per_wavelength": { "max": 0.7, "p95": 0.25 } } }),
-            _ => json!({ "day": { "max": 0.7, "p95": 0.25 } }),
+    fn done(layout: &dyn Layout) -> Done {
+        let error = if layout.name() == "compact" {
+            json!({ "day": { "per_wavelength": { "max": 0.7, "p95": 0.25 } } })
+        } else {
+            json!({ "day": { "max": 0.7, "p95": 0.25 } })
         };
         let mut done = Done::nothing(PathBuf::from("out/x"));
         done.quality.insert(layout.report_key().into(), error);
@@ -249,7 +251,7 @@ mod tests {
     /// The worst error of a bake is found in whichever layout it has, and the table of several has its column.
     #[test]
     fn every_layout_is_summed_up() {
-        for layout in Layout::ALL {
+        for layout in layout::ALL {
             let worst = done(layout).worst().unwrap();
             assert_eq!(
                 (worst.error, worst.layout.as_str(), worst.region.as_str()),

@@ -3,8 +3,8 @@
 use super::{Bake, ViewDifference};
 use crate::error::{Error, Result};
 use crate::geometry::Point;
-use crate::layout::settings::Layout;
-use crate::layout::sky::{AerosolPhase, Channels, Component, Sky};
+use crate::layout;
+use crate::layout::sky::{self, AerosolPhase, Channels, Component, Sky};
 use crate::quality::DARK;
 use crate::quality::{Distribution, REGIONS, Region, views};
 use crate::spectrum::{delta_e_2000_scaled, invert, multiply};
@@ -13,7 +13,7 @@ use rayon::prelude::*;
 /// Every layout that both bakes have and that this tool can answer from, region by region.
 pub fn compare(a: &Bake, b: &Bake, count: usize) -> Result<Vec<ViewDifference>> {
     let mut out = Vec::new();
-    for layout in Layout::ALL.map(Layout::name) {
+    for layout in layout::ALL.map(|layout| layout.name()) {
         let has = |bake: &Bake| bake.manifest.tables.iter().any(|t| t.layout == layout);
         if !(has(a) && has(b)) {
             continue;
@@ -40,7 +40,7 @@ impl Bake {
 
 /// A layout of a bake with what makes its answers absolute.
 struct Eye {
-    sky: Sky,
+    sky: Box<dyn Sky>,
     /// Of the star at the layout's wavelengths, W/(m² nm); its illuminance, lx, for a layout in colour.
     star: Vec<f64>,
     illuminance: f64,
@@ -49,7 +49,7 @@ struct Eye {
 
 impl Eye {
     fn open(bake: &Bake, layout: &str) -> Result<Self> {
-        let sky = Sky::open(&bake.folder, &bake.manifest, layout)?;
+        let sky = sky::open(&bake.folder, &bake.manifest, layout)?;
         let illuminance = bake.constant("star_illuminance_lx")?;
         let star = match sky.channels() {
             Channels::Rgb => vec![illuminance; 3],

@@ -2,14 +2,14 @@
 
 use crate::error::Result;
 use crate::geometry::Point;
-use crate::layout::sky::volume::{Place, Plane, Volume, enter, sun_at_ground};
-use crate::layout::sky::{Component, Source, multiply};
+use crate::layout::sky::volume::{Place, Plane, Volume, enter, outside, sun_at_ground};
+use crate::layout::sky::{AerosolPhase, Channels, Component, Sky, Source, multiply};
 use crate::mapping::Elek2010;
 use std::f64::consts::FRAC_1_PI;
 
 /// The compact layout in memory.
 pub struct Compact {
-    pub wavelengths_nm: Vec<f64>,
+    wavelengths_nm: Vec<f64>,
     singles: Vec<Volume>,
     multiple: Volume,
     depth: Plane,
@@ -47,12 +47,12 @@ impl Compact {
         })
     }
 
-    pub(in crate::layout) fn mapping(&self) -> &Elek2010 {
+    fn mapping(&self) -> &Elek2010 {
         self.multiple.mapping()
     }
 
     /// Radiance over solar irradiance at the four wavelengths.
-    pub fn radiance(&self, point: &Point, component: Component) -> Vec<f64> {
+    fn spectrum(&self, point: &Point, component: Component) -> Vec<f64> {
         let count = self.wavelengths_nm.len();
         let Some(place) = enter(point, self.mapping()) else { return vec![0.0; count] };
         let depth = self.depth.depth(place.altitude, place.mu, place.hits_ground);
@@ -103,14 +103,26 @@ impl Compact {
         }
         out
     }
+}
 
-    /// Transmittance towards the sun at the wavelengths.
-    pub(in crate::layout) fn sunlight(&self, altitude: f64, mu_s: f64) -> Vec<f64> {
-        self.depth.sunlight(altitude, mu_s)[..self.wavelengths_nm.len()].to_vec()
+impl Sky for Compact {
+    fn channels(&self) -> Channels {
+        Channels::Wavelengths(self.wavelengths_nm.clone())
     }
 
-    /// Linear RGB over the star's illuminance.
-    pub fn rgb(&self, radiance: &[f64]) -> [f64; 3] {
-        multiply(&self.rgb, radiance)
+    fn outside(&self, point: &Point) -> Option<(&'static str, f64, String)> {
+        outside(point, self.mapping())
+    }
+
+    fn radiance(&self, point: &Point, component: Component, _: AerosolPhase) -> Vec<f64> {
+        self.spectrum(point, component)
+    }
+
+    fn sunlight(&self, altitude: f64, mu_s: f64) -> [f64; 3] {
+        multiply(&self.rgb, &self.depth.sunlight(altitude, mu_s)[..self.wavelengths_nm.len()])
+    }
+
+    fn rgb(&self, point: &Point, component: Component) -> [f64; 3] {
+        multiply(&self.rgb, &self.spectrum(point, component))
     }
 }

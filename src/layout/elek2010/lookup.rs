@@ -2,9 +2,8 @@
 
 use crate::error::Result;
 use crate::geometry::Point;
-use crate::layout::sky::volume::{Plane, Volume, enter, sun_at_ground};
-use crate::layout::sky::{AerosolPhase, Component, Source, multiply};
-use crate::mapping::Elek2010;
+use crate::layout::sky::volume::{Plane, Volume, enter, outside, sun_at_ground};
+use crate::layout::sky::{AerosolPhase, Channels, Component, Sky, Source, multiply};
 use std::f64::consts::{FRAC_1_PI, PI};
 
 /// The layout of Elek & Kmoch 2010 in memory.
@@ -37,12 +36,8 @@ impl Elek2010Sky {
         })
     }
 
-    pub(in crate::layout) fn mapping(&self) -> &Elek2010 {
-        self.scattering.mapping()
-    }
-
     /// Linear RGB over the star's illuminance, 1/sr (I_F = I_S + I_P e^−t of the paper's §5).
-    pub fn radiance(&self, point: &Point, component: Component, phase: AerosolPhase) -> [f64; 3] {
+    fn colour(&self, point: &Point, component: Component, phase: AerosolPhase) -> [f64; 3] {
         let Some(place) = enter(point, self.scattering.mapping()) else { return [0.0; 3] };
         let mut out = [0.0; 3];
         if component != Component::Ground
@@ -61,10 +56,6 @@ impl Elek2010Sky {
             (0..3).for_each(|c| out[c] += ground[c]);
         }
         out
-    }
-
-    pub(in crate::layout) fn sunlight(&self, altitude: f64, mu_s: f64) -> [f64; 3] {
-        multiply(&self.rgb, &self.depth.sunlight(altitude, mu_s)[..self.rgb[0].len()])
     }
 
     fn with_phase(&self, sunlight: [f64; 4], nu: f64, phase: AerosolPhase) -> [f64; 4] {
@@ -95,5 +86,27 @@ impl Elek2010Sky {
             let ambient = ambient[c] / self.illuminance * (reflected[c] / white[c]).max(0.0);
             FRAC_1_PI * (direct[c].max(0.0) + ambient)
         })
+    }
+}
+
+impl Sky for Elek2010Sky {
+    fn channels(&self) -> Channels {
+        Channels::Rgb
+    }
+
+    fn outside(&self, point: &Point) -> Option<(&'static str, f64, String)> {
+        outside(point, self.scattering.mapping())
+    }
+
+    fn radiance(&self, point: &Point, component: Component, phase: AerosolPhase) -> Vec<f64> {
+        self.colour(point, component, phase).to_vec()
+    }
+
+    fn sunlight(&self, altitude: f64, mu_s: f64) -> [f64; 3] {
+        multiply(&self.rgb, &self.depth.sunlight(altitude, mu_s)[..self.rgb[0].len()])
+    }
+
+    fn rgb(&self, point: &Point, component: Component) -> [f64; 3] {
+        self.colour(point, component, AerosolPhase::Preset)
     }
 }

@@ -5,9 +5,6 @@
 mod check;
 pub(in crate::layout) mod volume;
 
-use super::compact::lookup::Compact;
-use super::elek2010::lookup::Elek2010Sky;
-use super::three_atmosphere::lookup::ThreeAtmosphere;
 use crate::error::{Error, Result};
 use crate::files::bounded_read;
 use crate::files::manifest::{Manifest, Table};
@@ -34,14 +31,6 @@ pub enum AerosolPhase {
     Isotropic,
 }
 
-/// A layout of a bake, ready to answer. One is open at a time, so that its size on the stack does not matter.
-#[expect(clippy::large_enum_variant)]
-pub enum Sky {
-    Compact(Compact),
-    Elek2010(Elek2010Sky),
-    ThreeAtmosphere(ThreeAtmosphere),
-}
-
 /// What the answers of a layout are.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Channels {
@@ -51,78 +40,49 @@ pub enum Channels {
     Rgb,
 }
 
-impl Sky {
-    /// Opens one layout of a bake on disk.
-    ///
-    /// # Errors
-    /// `File` for a missing, truncated or foreign file, or one that the manifest does not describe.
-    pub fn open(bake: &Path, manifest: &Manifest, layout: &str) -> Result<Sky> {
-        Sky::new(bake, manifest, layout, &pictures(bake, manifest, layout)?)
-    }
-
-    /// The same from pictures in memory, by table name. `bake` is for messages.
-    pub fn new(
-        bake: &Path,
-        manifest: &Manifest,
-        layout: &str,
-        pictures: &BTreeMap<String, Atlas>,
-    ) -> Result<Sky> {
-        let source = Source { bake, manifest, layout, pictures };
-        source.check()?;
-        match layout {
-            "compact" => Ok(Sky::Compact(Compact::new(&source)?)),
-            "elek2010" => Ok(Sky::Elek2010(Elek2010Sky::new(&source)?)),
-            "three-atmosphere" => Ok(Sky::ThreeAtmosphere(ThreeAtmosphere::new(&source)?)),
-            other => Err(Error::Argument(format!("layout {other}: not one that this tool can read"))),
-        }
-    }
-
-    pub fn channels(&self) -> Channels {
-        match self {
-            Sky::Compact(sky) => Channels::Wavelengths(sky.wavelengths_nm.clone()),
-            Sky::Elek2010(_) | Sky::ThreeAtmosphere(_) => Channels::Rgb,
-        }
-    }
+/// A layout of a bake, ready to answer.
+pub trait Sky: Send + Sync {
+    fn channels(&self) -> Channels;
 
     /// What of a view the tables do not hold, as key, value and reason, where they are for a window that it is not in:
     /// there [`Sky::radiance`] answers with the nearest that they do hold.
-    pub fn outside(&self, point: &Point) -> Option<(&'static str, f64, String)> {
-        match self {
-            Sky::Compact(sky) => volume::outside(point, sky.mapping()),
-            Sky::Elek2010(sky) => volume::outside(point, sky.mapping()),
-            Sky::ThreeAtmosphere(_) => None,
-        }
-    }
+    fn outside(&self, point: &Point) -> Option<(&'static str, f64, String)>;
 
     /// The light that arrives at a point of view, one value a channel, 1/sr.
-    pub fn radiance(&self, point: &Point, component: Component, phase: AerosolPhase) -> Vec<f64> {
-        match self {
-            Sky::Compact(sky) => sky.radiance(point, component),
-            Sky::Elek2010(sky) => sky.radiance(point, component, phase).to_vec(),
-            Sky::ThreeAtmosphere(sky) => sky.radiance(point, component).to_vec(),
-        }
-    }
+    fn radiance(&self, point: &Point, component: Component, phase: AerosolPhase) -> Vec<f64>;
 
     /// Sunlight that arrives at an observer in the air, on a plane normal to it, linear RGB over the star's illuminance.
-    pub fn sunlight(&self, altitude: f64, mu_s: f64) -> [f64; 3] {
-        match self {
-            Sky::Compact(sky) => sky.rgb(&sky.sunlight(altitude, mu_s)),
-            Sky::Elek2010(sky) => sky.sunlight(altitude, mu_s),
-            Sky::ThreeAtmosphere(sky) => sky.sunlight(altitude, mu_s),
-        }
-    }
+    fn sunlight(&self, altitude: f64, mu_s: f64) -> [f64; 3];
 
     /// The light of [`Sky::radiance`] as linear RGB over the star's illuminance, 1/sr.
-    pub fn rgb(&self, point: &Point, component: Component) -> [f64; 3] {
-        match self {
-            Sky::Compact(sky) => sky.rgb(&sky.radiance(point, component)),
-            Sky::Elek2010(sky) => sky.radiance(point, component, AerosolPhase::Preset),
-            Sky::ThreeAtmosphere(sky) => sky.radiance(point, component),
-        }
-    }
+    fn rgb(&self, point: &Point, component: Component) -> [f64; 3];
 }
 
-/// The pictures of a layout's tables, by table name. Whether they are what their manifest says, [`Sky::new`] finds.
+/// Opens one layout of a bake on disk.
+///
+/// # Errors
+/// `File` for a missing, truncated or foreign file, or one that the manifest does not describe.
+pub fn open(bake: &Path, manifest: &Manifest, layout: &str) -> Result<Box<dyn Sky>> {
+    of_pictures(bake, manifest, layout, &pictures(bake, manifest, layout)?)
+}
+
+/// One layout from pictures in memory, by table name. `bake` is for messages.
+///
+/// # Errors
+/// `File` for pictures that the manifest does not describe, `Argument` for a layout that there is not.
+pub fn of_pictures(
+    bake: &Path,
+    manifest: &Manifest,
+    layout: &str,
+    pictures: &BTreeMap<String, Atlas>,
+) -> Result<Box<dyn Sky>> {
+    let Some(found) = super::named(layout) else {
+        return Err(Error::Argument(format!("layout {layout}: not one that this tool can read")));
+    };
+    found.open(&Source::new(bake, manifest, layout, pictures)?)
+}
+
+/// The pictures of a layout's tables, by table name. Whether they are what their manifest says, [`of_pictures`] finds.
 ///
 /// # Errors
 /// `File` for a file that is missing, damaged, or another than the one that was baked.
@@ -147,14 +107,26 @@ pub fn picture(folder: &Path, table: &Table) -> Result<Atlas> {
 }
 
 /// Where a layout's tables come from.
-pub(in crate::layout) struct Source<'a> {
+pub struct Source<'a> {
     pub(in crate::layout) bake: &'a Path,
     pub(in crate::layout) manifest: &'a Manifest,
     pub(in crate::layout) layout: &'a str,
     pub(in crate::layout) pictures: &'a BTreeMap<String, Atlas>,
 }
 
-impl Source<'_> {
+impl<'a> Source<'a> {
+    /// Errors: `File` with the key of the first number of the manifest that no bake has.
+    pub(in crate::layout) fn new(
+        bake: &'a Path,
+        manifest: &'a Manifest,
+        layout: &'a str,
+        pictures: &'a BTreeMap<String, Atlas>,
+    ) -> Result<Self> {
+        let source = Source { bake, manifest, layout, pictures };
+        source.check()?;
+        Ok(source)
+    }
+
     pub(in crate::layout) fn refuse(&self, reason: String) -> Error {
         Error::file(self.bake, reason)
     }

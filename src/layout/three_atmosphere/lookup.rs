@@ -2,12 +2,16 @@
 
 use super::Bruneton;
 use crate::error::Result;
+use crate::files::Atlas;
+use crate::files::manifest::Manifest;
 use crate::geometry::Point;
 use crate::layout::sky::volume::{Place, Texels, enter, sun_at_ground};
-use crate::layout::sky::{Component, Source};
+use crate::layout::sky::{AerosolPhase, Channels, Component, Sky, Source};
 use crate::mapping::texel;
 use crate::medium::PhaseFunction;
+use std::collections::BTreeMap;
 use std::f64::consts::FRAC_1_PI;
+use std::path::Path;
 
 /// The layout in memory.
 pub struct ThreeAtmosphere {
@@ -84,15 +88,24 @@ impl ThreeAtmosphere {
         })
     }
 
-    /// From now on, of light scattered once by aerosols only the red in channel A of `scattering` is read, as by the
-    /// package without `single_mie_scattering`: green and blue follow the rest of the light, times the quotients of
-    /// `mie_over_rayleigh` (Bruneton 2017, GetExtrapolatedSingleMieScattering).
-    pub fn guess_mie(&mut self, mie_over_rayleigh: [f64; 3]) {
-        self.guess = Some(mie_over_rayleigh);
+    /// Tables of which, of light scattered once by aerosols, only the red in channel A of `scattering` is read, as by the
+    /// package without `single_mie_scattering`, from pictures in memory: green and blue follow the rest of the light, times
+    /// the quotients of `mie_over_rayleigh` (Bruneton 2017, GetExtrapolatedSingleMieScattering).
+    ///
+    /// # Errors
+    /// As [`crate::layout::sky::of_pictures`].
+    pub fn with_red_alone(
+        bake: &Path,
+        manifest: &Manifest,
+        pictures: &BTreeMap<String, Atlas>,
+        mie_over_rayleigh: [f64; 3],
+    ) -> Result<Self> {
+        let found = ThreeAtmosphere::new(&Source::new(bake, manifest, super::LAYOUT, pictures)?)?;
+        Ok(ThreeAtmosphere { guess: Some(mie_over_rayleigh), ..found })
     }
 
     /// Linear RGB over the star's illuminance, 1/sr.
-    pub fn radiance(&self, point: &Point, component: Component) -> [f64; 3] {
+    fn colour(&self, point: &Point, component: Component) -> [f64; 3] {
         let Some(place) = enter(point, self.mapping.shell()) else { return [0.0; 3] };
         let mut out = [0.0; 3];
         if component != Component::Ground {
@@ -103,15 +116,6 @@ impl ThreeAtmosphere {
             (0..3).for_each(|c| out[c] += ground[c]);
         }
         out.map(|v| v / self.illuminance)
-    }
-
-    /// Sunlight on a plane normal to it, linear RGB over the star's illuminance; 0 behind the planet.
-    pub fn sunlight(&self, altitude: f64, mu_s: f64) -> [f64; 3] {
-        if self.mapping.shell().hits_ground(altitude, mu_s) {
-            return [0.0; 3];
-        }
-        let through = self.to_top(altitude, mu_s);
-        std::array::from_fn(|c| through[c] * self.star[c] / self.illuminance)
     }
 
     fn sky(&self, p: &Place) -> [f64; 3] {
@@ -160,5 +164,31 @@ impl ThreeAtmosphere {
             let through = (whole[c] / rest[c]).min(1.0);
             through * self.ground_albedo[c] * FRAC_1_PI * (direct[c] * self.star[c] + diffuse[c])
         })
+    }
+}
+
+impl Sky for ThreeAtmosphere {
+    fn channels(&self) -> Channels {
+        Channels::Rgb
+    }
+
+    fn outside(&self, _: &Point) -> Option<(&'static str, f64, String)> {
+        None
+    }
+
+    fn radiance(&self, point: &Point, component: Component, _: AerosolPhase) -> Vec<f64> {
+        self.colour(point, component).to_vec()
+    }
+
+    fn sunlight(&self, altitude: f64, mu_s: f64) -> [f64; 3] {
+        if self.mapping.shell().hits_ground(altitude, mu_s) {
+            return [0.0; 3];
+        }
+        let through = self.to_top(altitude, mu_s);
+        std::array::from_fn(|c| through[c] * self.star[c] / self.illuminance)
+    }
+
+    fn rgb(&self, point: &Point, component: Component) -> [f64; 3] {
+        self.colour(point, component)
     }
 }

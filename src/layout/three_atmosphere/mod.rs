@@ -14,12 +14,18 @@ mod parameters;
 mod phase;
 mod tables;
 
+use super::judge::{Truth, in_rgb};
+use super::settings::Settings;
+use super::sky::{AerosolPhase, Sky, Source};
 use super::table_data::Baked;
+use super::{Filled, Ingredients, Layout, MediumKind};
 use crate::colour::weights::Palette;
 use crate::error::Result;
+use crate::mapping::Elek2010;
 use crate::medium::Medium;
 use crate::preset::Planet;
 use crate::transport::solve::Solution;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
 pub use bruneton::Bruneton;
@@ -64,4 +70,65 @@ pub fn tables(planet: &Planet, medium: &Medium, solution: &Solution, palette: &P
         ("three_atmosphere_star_rgb_lx".to_string(), colours.star_lx.to_vec()),
     ]);
     Ok(Tables { tables, parameters, constants, negative })
+}
+
+/// Files of the npm package @takram/three-atmosphere.
+pub struct ThreeAtmosphereLayout;
+
+impl Layout for ThreeAtmosphereLayout {
+    fn name(&self) -> &'static str {
+        LAYOUT
+    }
+
+    fn version(&self) -> u32 {
+        ALGORITHM_VERSION
+    }
+
+    fn about(&self) -> Option<&'static str> {
+        Some("Files of the npm package @takram/three-atmosphere")
+    }
+
+    fn medium(&self) -> MediumKind {
+        MediumKind::Full
+    }
+
+    fn has_windows(&self) -> bool {
+        false
+    }
+
+    fn mappings(&self, medium: &Medium, _: &Settings) -> Vec<Elek2010> {
+        Elek2010::new(medium.ground_radius, medium.top_radius, Bruneton::SIZE).into_iter().collect()
+    }
+
+    /// All orders, single scattering by aerosols, and orders beyond the first.
+    fn texels(&self, _: &Medium, _: &Settings) -> usize {
+        3 * Bruneton::SIZE.iter().product::<usize>()
+    }
+
+    fn fill(&self, from: &Ingredients) -> Result<Filled> {
+        let found = tables(from.planet, from.full, from.solution, from.palette)?;
+        let mut filled = Filled { tables: found.tables, constants: found.constants, ..Filled::default() };
+        let negative = "three-atmosphere colours outside the gamut, set to 0";
+        filled.counts.insert(negative.into(), json!(found.negative));
+        let about = "parameters for the AtmosphereParameters of @takram/three-atmosphere";
+        let path = format!("{LAYOUT}/parameters.json");
+        filled.files.push((path, about.into(), found.parameters.into_bytes()));
+        Ok(filled)
+    }
+
+    fn open(&self, source: &Source) -> Result<Box<dyn Sky>> {
+        Ok(Box::new(lookup::ThreeAtmosphere::new(source)?))
+    }
+
+    fn report_key(&self) -> &'static str {
+        "three_atmosphere_against_direct_integration"
+    }
+
+    fn judge(&self, sky: &dyn Sky, palette: &Palette, truths: &[Truth]) -> Value {
+        in_rgb(sky, palette, truths, AerosolPhase::Preset)
+    }
+
+    fn remedy(&self) -> &'static str {
+        "its sizes are its reader's own, and layout compact errs less"
+    }
 }

@@ -10,7 +10,7 @@ use tyndall::Error;
 use tyndall::bake::{Lights, Product, bake_in};
 use tyndall::commands::bake::{Args, settings_of};
 use tyndall::geometry::Point;
-use tyndall::layout::settings::Layout;
+use tyndall::layout::Layout;
 use tyndall::layout::sky::{AerosolPhase, Component};
 use tyndall::preset;
 
@@ -223,9 +223,9 @@ fn window(choices: &mut Choices, height: f64) -> Vec<String> {
 
 /// Every number of the tables is finite, or they would not have been encoded; the layout can be opened, and its answers
 /// are light.
-fn sound(product: &Product, height: f64, layout: Layout) {
+fn sound(product: &Product, height: f64, layout: &'static dyn Layout) {
     let sky = opened(product, layout);
-    ask(&sky);
+    ask(sky.as_ref());
     for (share, mu, mu_s) in
         [(0.0, 0.5, 0.4), (0.3, -0.2, -0.1), (1.0, -1.0, 0.9), (2.0, -0.9, 0.2), (0.0, 0.0, 1.0)]
     {

@@ -15,9 +15,12 @@ use tyndall::files::Atlas;
 use tyndall::files::exr::{from_exr_bytes, to_exr_bytes};
 use tyndall::files::manifest::Manifest;
 use tyndall::geometry::Point;
+use tyndall::layout::Layout;
+use tyndall::layout::compact::CompactLayout;
 use tyndall::layout::compact::Sizes;
-use tyndall::layout::settings::{Layout, Settings};
-use tyndall::layout::sky::{AerosolPhase, Component, Sky};
+use tyndall::layout::elek2010::Elek2010Layout;
+use tyndall::layout::settings::Settings;
+use tyndall::layout::sky::{self, AerosolPhase, Component, Sky};
 use tyndall::layout::water::Waters;
 use tyndall::layout::water::lookup::{WaterSky, WaterView};
 use tyndall::preset::{self, Planet};
@@ -45,7 +48,7 @@ fn baked() -> &'static Baked {
         let mut waters = Waters { size: [2, 2, 2], underwater: true, ..Waters::default() };
         waters.list = vec![preset::load_water("clear-ocean", &[]).expect("a shipped water")];
         let settings = Settings {
-            layouts: vec![Layout::Elek2010, Layout::Compact],
+            layouts: vec![&Elek2010Layout, &CompactLayout],
             elek2010_size: size,
             compact: Sizes { single: size, multiple: size, depth: [3, 4] }.into(),
             wavelengths_nm: vec![450.0, 550.0, 650.0],
@@ -92,11 +95,11 @@ fn pictures(product: &Product) -> BTreeMap<String, BTreeMap<String, Atlas>> {
 }
 
 /// The sky of a layout of a bake in memory.
-pub fn opened(product: &Product, layout: Layout) -> Sky {
+pub fn opened(product: &Product, layout: &dyn Layout) -> Box<dyn Sky> {
     let empty = BTreeMap::new();
     let pictures = pictures(product);
     let of_layout = pictures.get(layout.name()).unwrap_or(&empty);
-    Sky::new(file(), &product.manifest, layout.name(), of_layout).expect("a layout of the bake")
+    sky::of_pictures(file(), &product.manifest, layout.name(), of_layout).expect("a layout of the bake")
 }
 
 fn bytes_of<'a>(product: &'a Product, name: &str) -> &'a [u8] {
@@ -163,9 +166,9 @@ pub fn manifest(bytes: &[u8]) {
     let empty = BTreeMap::new();
     let of = |layout: &str| baked.pictures.get(layout).unwrap_or(&empty);
     for layout in LAYOUTS {
-        match Sky::new(file(), &manifest, layout, of(layout)) {
+        match sky::of_pictures(file(), &manifest, layout, of(layout)) {
             Err(error) => refused(&error),
-            Ok(sky) => ask(&sky),
+            Ok(sky) => ask(sky.as_ref()),
         }
     }
     for water in &manifest.waters {
@@ -184,7 +187,7 @@ pub fn manifest(bytes: &[u8]) {
 }
 
 /// Asks a sky for everything that can be asked.
-pub fn ask(sky: &Sky) {
+pub fn ask(sky: &dyn Sky) {
     for (altitude, mu, mu_s) in [(0.0, 0.5, 0.2), (1e4, -0.3, -0.1), (1e9, -1.0, 1.0)] {
         let point = Point { altitude, mu, mu_s, azimuth_deg: 30.0 };
         sky.radiance(&point, Component::Total, AerosolPhase::Preset);

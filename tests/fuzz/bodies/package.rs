@@ -9,8 +9,9 @@ use tyndall::bake::{self, Product};
 use tyndall::files::Atlas;
 use tyndall::files::exr::from_exr_bytes;
 use tyndall::files::manifest::Manifest;
-use tyndall::layout::settings::{Layout, Settings};
-use tyndall::layout::sky::Sky;
+use tyndall::layout::settings::Settings;
+use tyndall::layout::sky;
+use tyndall::layout::three_atmosphere::{LAYOUT, ThreeAtmosphereLayout};
 use tyndall::preset;
 use tyndall::transport::solve::Orders;
 
@@ -38,7 +39,7 @@ fn baked() -> &'static Baked {
 fn made() -> Product {
     let planet = preset::load("earth-paper", &[]).expect("a shipped preset");
     let settings = Settings {
-        layouts: vec![Layout::ThreeAtmosphere],
+        layouts: vec![&ThreeAtmosphereLayout],
         wavelengths_nm: vec![450.0, 550.0, 650.0],
         orders: Orders::First(1),
         ..Settings::default()
@@ -51,8 +52,8 @@ pub fn tables(bytes: &[u8]) {
     let baked = baked();
     let Some(text) = text(bytes, &baked.base) else { return };
     let Ok(manifest) = Manifest::parse(file(), &text) else { return };
-    match Sky::new(file(), &manifest, Layout::ThreeAtmosphere.name(), &baked.tables) {
+    match sky::of_pictures(file(), &manifest, LAYOUT, &baked.tables) {
         Err(error) => refused(&error),
-        Ok(sky) => bakes::ask(&sky),
+        Ok(sky) => bakes::ask(sky.as_ref()),
     }
 }
