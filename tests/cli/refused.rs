@@ -61,7 +61,7 @@ fn arguments() {
         ("--wavelengths 440,x", &["`x` is not a wavelength"]),
         ("--wavelengths 440,NaN", &["NaN nm is outside 100 to 10000 nm"]),
         ("--wavelengths 440,1e999", &["outside 100 to 10000 nm"]),
-        ("--layout sphere", &["'sphere'", "elek2010, compact"]),
+        ("--layout sphere", &["'sphere'", "compact, elek2010, three-atmosphere"]),
         ("--threads 0", &["--threads 0"]),
         ("--threads 100000", &["--threads 100000", "1024 are the most"]),
         ("--isa mmx", &["'mmx'", "baseline"]),
