@@ -17,16 +17,15 @@ use crate::files::claim::Claim;
 use crate::files::container::Container;
 use crate::files::manifest::Manifest;
 use crate::files::staging::Staging;
+use crate::layout;
 use crate::layout::settings::{Settings, TOLERANCE};
 use crate::layout::water::Waters;
-use crate::layout::{self, Layout};
 use crate::machine::memory;
 use crate::plan::{Plan, load_waters};
 use crate::preset::{self, Planet, Tolerance};
 use crate::spectrum::{Adaptation, ColourSpace, White};
 use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
-use clap::builder::{PossibleValue, PossibleValuesParser};
 use jobs::{Bounds, run_all};
 use progress::{Progress, stages};
 use std::collections::BTreeMap;
@@ -65,7 +64,7 @@ pub struct Args {
     #[arg(long, default_value = "out", value_name = "FOLDER")]
     out: PathBuf,
     /// Layouts to write, comma-separated
-    #[arg(long, value_delimiter = ',', value_parser = layouts(), default_value = "elek2010,compact")]
+    #[arg(long, value_delimiter = ',', value_parser = settings::layouts(), default_value = "elek2010,compact")]
     layout: Vec<String>,
     /// Texels: altitude x view x sun x azimuth (of elek2010), or LAYOUT=AxBxCxD with LAYOUT elek2010, compact
     /// (its table of multiple scattering) or compact-single; compact-transmittance=AxB: altitude x view;
@@ -359,15 +358,6 @@ pub fn planned(plan: &Plan, out: &Path, quiet: bool, json: bool) -> Result<()> {
         summary::tell(&outcomes, false, false)?;
     }
     summary::failure(outcomes)
-}
-
-/// What `--layout` takes.
-fn layouts() -> PossibleValuesParser {
-    let value = |layout: &dyn Layout| {
-        let value = PossibleValue::new(layout.name());
-        layout.about().map_or(value.clone(), |about| value.help(about))
-    };
-    PossibleValuesParser::new(layout::ALL.map(value))
 }
 
 /// Layouts of the bake that stands in a folder; none where there is none.

@@ -17,6 +17,7 @@ use crate::preset::{self, Planet, Scene, Tolerance};
 use crate::spectrum::Rgb;
 use crate::transport::slab::WaterOrders;
 use crate::transport::solve::Orders;
+use clap::builder::{PossibleValue, PossibleValuesParser};
 
 /// The settings of each planet of a run: where tables are for a window, their sizes depend on the shell.
 pub fn for_planets(settings: &Settings, sized: Sized, planets: &[Result<Planet>]) -> Vec<Settings> {
@@ -60,6 +61,18 @@ pub fn planned(
     }
     progress.say(&format!("{}: planned: {}", planet.name, plan.command()));
     Ok(plan.planned.model.settings(settings))
+}
+
+/// What `--layout` takes.
+pub fn layouts() -> PossibleValuesParser {
+    let value = |layout: &dyn Layout| {
+        let value = PossibleValue::new(layout.name());
+        match layout.about() {
+            Some(about) => value.help(about),
+            None => value,
+        }
+    };
+    PossibleValuesParser::new(layout::ALL.map(value))
 }
 
 /// The settings that hold for every preset of the run, and which sizes were asked for.
