@@ -19,8 +19,10 @@
 
 pub mod algorithm1;
 pub mod bake;
+#[cfg(feature = "chart")]
 pub mod chart;
 pub mod colour;
+#[cfg(feature = "cli")]
 pub mod commands;
 pub mod error;
 pub mod files;

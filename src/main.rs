@@ -1,9 +1,11 @@
 //! Arguments → command → exit code.
 
 use clap::Parser;
-use tyndall::commands::share_threads;
-use tyndall::commands::{bake, chart, colour, diff, plan, presets, recolour, reference, sample, verify};
-use tyndall::files::interrupt::handle_interrupts;
+#[cfg(feature = "chart")]
+use tyndall::commands::chart;
+use tyndall::commands::{bake, colour, diff, plan, presets, recolour, reference, sample, verify};
+use tyndall::commands::{refused, share_threads};
+use tyndall::files::signals::handle_interrupts;
 use tyndall::machine::output;
 
 #[global_allocator]
@@ -20,6 +22,7 @@ enum Command {
     Verify(verify::Args),
     Diff(diff::Args),
     Recolour(recolour::Args),
+    #[cfg(feature = "chart")]
     Chart(chart::Args),
     Plan(plan::Args),
     Colour(colour::Args),
@@ -29,7 +32,7 @@ enum Command {
 fn main() -> std::process::ExitCode {
     let result = match Command::try_parse() {
         Ok(command) => handle_interrupts().and_then(|()| run(command)).and_then(|()| output::heard()),
-        Err(error) => output::refused(&error),
+        Err(error) => refused(&error),
     };
     match result {
         Ok(()) => std::process::ExitCode::SUCCESS,
@@ -44,7 +47,9 @@ impl Command {
     /// The threads of a command that has no `--threads`; where there are none to be had, that is an error, not a panic.
     fn threads(&self) -> tyndall::Result<()> {
         match self {
-            Command::Bake(_) | Command::Plan(_) | Command::Chart(_) => Ok(()),
+            Command::Bake(_) | Command::Plan(_) => Ok(()),
+            #[cfg(feature = "chart")]
+            Command::Chart(_) => Ok(()),
             Command::Sample(_) | Command::Reference(_) => Ok(()),
             _ => share_threads(None),
         }
@@ -60,6 +65,7 @@ fn run(command: Command) -> tyndall::Result<()> {
         Command::Verify(args) => verify::run(&args),
         Command::Diff(args) => diff::run(&args),
         Command::Recolour(args) => recolour::run(&args),
+        #[cfg(feature = "chart")]
         Command::Chart(args) => chart::run(&args),
         Command::Plan(args) => plan::run(&args),
         Command::Colour(args) => colour::run(&args),

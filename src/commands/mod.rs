@@ -1,6 +1,7 @@
 //! One file a command: arguments in, results on standard output, talk on standard error.
 
 pub mod bake;
+#[cfg(feature = "chart")]
 pub mod chart;
 pub mod colour;
 pub mod colour_input;
@@ -21,3 +22,4 @@ mod text;
 pub mod verify;
 
 pub use machine::share_threads;
+pub use text::refused;

@@ -10,7 +10,8 @@ use crate::error::{Error, Result};
 use half::f16;
 
 /// A kind of file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Container {
     /// OpenEXR, which every bake has.
     Exr,

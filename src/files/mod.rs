@@ -18,6 +18,8 @@ pub mod points;
 pub mod replace;
 mod seal;
 pub mod sheet;
+#[cfg(feature = "cli")]
+pub mod signals;
 pub mod staging;
 mod sweep;
 pub mod whole;

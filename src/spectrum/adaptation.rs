@@ -5,9 +5,10 @@ use super::{D65, chromaticity};
 use serde::{Deserialize, Serialize};
 
 /// The cone responses in which a white is scaled to the other (von Kries).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
-#[value(rename_all = "lowercase")]
+#[cfg_attr(feature = "cli", value(rename_all = "lowercase"))]
 pub enum Adaptation {
     /// Lam 1985, as ICC profiles have it.
     Bradford,

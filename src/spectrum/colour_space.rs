@@ -3,9 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 /// A linear RGB colour space. Its white is its own: nothing is adapted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
-#[value(rename_all = "lowercase")]
+#[cfg_attr(feature = "cli", value(rename_all = "lowercase"))]
 pub enum ColourSpace {
     /// IEC 61966-2-1, primaries of ITU-R BT.709, white D65.
     Srgb,
@@ -13,7 +14,7 @@ pub enum ColourSpace {
     Rec2020,
     /// ACES2065-1: the AP0 primaries and white of S-2008-001 (about D60), which hold every colour there is.
     #[serde(rename = "aces2065-1")]
-    #[value(name = "aces2065-1")]
+    #[cfg_attr(feature = "cli", value(name = "aces2065-1"))]
     Aces20651,
     /// ACEScg: the AP1 primaries and white of S-2014-004 (about D60).
     Acescg,

@@ -13,14 +13,15 @@ const TABLE_1931: &str = include_str!("../../presets/spectra/cie1931-2deg.csv");
 const TABLE_1964: &str = include_str!("../../presets/spectra/cie1964-10deg.csv");
 
 /// Whose colours are meant.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Beholder {
     /// CIE 1931, 2°: the one of all RGB spaces.
     #[default]
-    #[value(name = "cie1931-2deg")]
+    #[cfg_attr(feature = "cli", value(name = "cie1931-2deg"))]
     Cie1931,
     /// CIE 1964, 10°: for large fields, as skies are. Its Y is no luminance.
-    #[value(name = "cie1964-10deg")]
+    #[cfg_attr(feature = "cli", value(name = "cie1964-10deg"))]
     Cie1964,
 }
 

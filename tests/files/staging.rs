@@ -5,7 +5,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use tempfile::{TempDir, tempdir};
-use tyndall::files::interrupt::handle_interrupts;
+use tyndall::files::signals::handle_interrupts;
 use tyndall::files::staging::Staging;
 
 /// A bake of two files, both holding `text`.

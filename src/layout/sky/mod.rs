@@ -15,7 +15,8 @@ use std::path::Path;
 use volume::{Plane, Volume};
 
 /// Which part of the light is asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Component {
     Total,
     Scattering,

@@ -21,7 +21,8 @@ use parts::definitions;
 use serde_json::{Map, Value, json};
 
 /// What a schema describes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Kind {
     Planet,
     Water,
