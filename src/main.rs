@@ -2,14 +2,15 @@
 
 use clap::Parser;
 #[cfg(feature = "chart")]
-use tyndall::commands::chart;
-use tyndall::commands::{bake, colour, diff, plan, presets, recolour, reference, sample, verify};
-use tyndall::commands::{refused, share_threads};
-use tyndall::files::signals::handle_interrupts;
-use tyndall::machine::output;
+use tyndall::internals::commands::chart;
+use tyndall::internals::commands::{bake, colour, diff, plan, presets, recolour, reference, sample, verify};
+use tyndall::internals::commands::{refused, share_threads};
+use tyndall::internals::files::signals::handle_interrupts;
+use tyndall::internals::machine::output;
 
 #[global_allocator]
-static MEMORY: tyndall::machine::memory::Allocator = tyndall::machine::memory::Allocator;
+static MEMORY: tyndall::internals::machine::memory::Allocator =
+    tyndall::internals::machine::memory::Allocator;
 
 /// Offline baker of lookup tables for planetary atmospheres
 #[derive(Parser)]

@@ -1,6 +1,6 @@
 //! The paper's parameterisation: round trips, ends, and the places where its formulas lose their digits.
 
-use tyndall::mapping::{Bends, Elek2010, Layer, SunCurve, Views, Window};
+use tyndall::internals::mapping::{Bends, Elek2010, Layer, SunCurve, Views, Window};
 
 /// Tiny, Earth-like, thick (Titan-like) and huge shells, m.
 const SHELLS: [(f64, f64); 4] = [(400e3, 460e3), (6371e3, 6436e3), (2575e3, 3175e3), (140e6, 140.3e6)];

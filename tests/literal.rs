@@ -7,10 +7,10 @@ mod direct;
 use constituents::{RAYLEIGH, constituent, exponential};
 use direct::Planet;
 use std::f64::consts::PI;
-use tyndall::algorithm1::{Gather, Literal, Settings, bake, work};
-use tyndall::machine::isa::Isa;
-use tyndall::machine::lanes::Lanes;
-use tyndall::medium::{Medium, PhaseFunction, Role};
+use tyndall::internals::algorithm1::{Gather, Literal, Settings, bake, work};
+use tyndall::internals::machine::isa::Isa;
+use tyndall::internals::machine::lanes::Lanes;
+use tyndall::internals::medium::{Medium, PhaseFunction, Role};
 
 /// A small world with a thick shell at two wavelengths: vertical optical depths 0.45 and 0.23.
 fn small_world() -> Medium {

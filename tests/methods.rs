@@ -1,12 +1,12 @@
 //! The older methods are what they are said to be: run finely they meet the solver where their physics does, and they
 //! fail where their tables must.
 
-use tyndall::geometry::Point;
-use tyndall::geometry::view::View;
-use tyndall::methods::{Elek2009, Method, Nishita, OneilMarch, PreparedSky, Schafhitzel};
-use tyndall::preset::{self, Planet};
-use tyndall::spectrum::ColourSpace;
-use tyndall::transport::solve::{Orders, Resolution, Solution};
+use tyndall::internals::geometry::Point;
+use tyndall::internals::geometry::view::View;
+use tyndall::internals::methods::{Elek2009, Method, Nishita, OneilMarch, PreparedSky, Schafhitzel};
+use tyndall::internals::preset::{self, Planet};
+use tyndall::internals::spectrum::ColourSpace;
+use tyndall::internals::transport::solve::{Orders, Resolution, Solution};
 
 /// Red, green and blue of the older methods.
 const NM: [f64; 3] = [680.0, 550.0, 440.0];

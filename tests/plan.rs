@@ -3,16 +3,16 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::OnceLock;
-use tyndall::bake::bake;
-use tyndall::geometry::view::View;
-use tyndall::layout::settings::Settings;
-use tyndall::layout::sky::{self, Component, Sky};
-use tyndall::mapping::Views;
-use tyndall::plan::{Effort, Plan, plan};
-use tyndall::preset::{self, Budget, Metric, Planet, Scene, Tolerance};
-use tyndall::quality::{Scope, colour_error};
-use tyndall::spectrum::{ColourSpace, Reconstruction, multiply};
-use tyndall::transport::solve::{Orders, Resolution, Solution};
+use tyndall::internals::bake::bake;
+use tyndall::internals::geometry::view::View;
+use tyndall::internals::layout::settings::Settings;
+use tyndall::internals::layout::sky::{self, Component, Sky};
+use tyndall::internals::mapping::Views;
+use tyndall::internals::plan::{Effort, Plan, plan};
+use tyndall::internals::preset::{self, Budget, Metric, Planet, Scene, Tolerance};
+use tyndall::internals::quality::{Scope, colour_error};
+use tyndall::internals::spectrum::{ColourSpace, Reconstruction, multiply};
+use tyndall::internals::transport::solve::{Orders, Resolution, Solution};
 
 /// A tenth of Earth's radius under ten times its aerosol, which scatters evenly: another curvature, another mixture.
 fn planet() -> Planet {
@@ -68,7 +68,7 @@ fn the_promise_holds_on_fresh_views() {
 
     let dir = tempfile::tempdir().unwrap();
     let sky = baked(&model.settings(&Settings::default()), dir.path());
-    let medium = planet.medium(&tyndall::spectrum::grid(15));
+    let medium = planet.medium(&tyndall::internals::spectrum::grid(15));
     let solution = Solution::new(&medium, &Resolution::TABLES, Orders::Converged { tolerance: 1e-4 });
     let reconstruction = Reconstruction::new(&medium.wavelengths_nm, &planet.star.irradiance);
     let illuminance = reconstruction.sum(|_| 1.0)[1];
@@ -200,6 +200,6 @@ fn shipped_scenes_hold() {
         let scene = preset::load_scene(name).unwrap();
         assert!(scene.name == name && description.len() > 20, "{name}");
         preset::load(&scene.planet, &[]).unwrap();
-        assert_eq!(tyndall::plan::load_waters(&scene).unwrap().len(), scene.waters.len());
+        assert_eq!(tyndall::internals::plan::load_waters(&scene).unwrap().len(), scene.waters.len());
     }
 }

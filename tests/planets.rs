@@ -1,7 +1,7 @@
 //! The shipped planets against what is published about them: optical depths, albedos, mean cosines, tops.
 
-use tyndall::medium::{Constituent, PhaseFunction};
-use tyndall::preset::{self, Planet};
+use tyndall::internals::medium::{Constituent, PhaseFunction};
+use tyndall::internals::preset::{self, Planet};
 
 const NEW: [&str; 7] =
     ["earth-blog", "earth-sparse10", "earth-dense10", "mars", "venus", "venus-cloudtop", "titan"];

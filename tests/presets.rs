@@ -1,8 +1,8 @@
 //! Presets as a user meets them: what is shipped, what is refused, and what comes out at the other side.
 
 use serde_json::{Value, json};
-use tyndall::medium::{PhaseFunction, Role};
-use tyndall::preset::{self, Planet};
+use tyndall::internals::medium::{PhaseFunction, Role};
+use tyndall::internals::preset::{self, Planet};
 
 /// A small red planet of a dwarf star with every kind of form, nothing like the Earth.
 fn red_planet() -> Value {
@@ -62,7 +62,7 @@ fn units_and_forms_become_si() {
     assert_eq!(medium.constituents[0].phase[0], PhaseFunction::Rayleigh { king_factor: 1.1 });
     // A disc of angular radius α of radiance B lights a plane with π B sin² α.
     let sine = libm::sin(0.4_f64.to_radians());
-    let b = tyndall::spectrum::planck_law(600.0, 3100.0) * 1e-9;
+    let b = tyndall::internals::spectrum::planck_law(600.0, 3100.0) * 1e-9;
     close(planet.star.irradiance.at(600.0), std::f64::consts::PI * sine * sine * b);
 }
 
@@ -86,7 +86,7 @@ fn resolved_planets_round_trip() {
         assert_eq!(back, planet);
         assert_eq!(back.resolved().to_string(), text);
         assert_eq!(back.hash(), planet.hash());
-        let grid = tyndall::spectrum::grid(15);
+        let grid = tyndall::internals::spectrum::grid(15);
         let (a, b) = (planet.medium(&grid), back.medium(&grid));
         assert_eq!(a.vertical_optical_depth(), b.vertical_optical_depth());
     }

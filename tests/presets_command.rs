@@ -15,7 +15,7 @@ fn stdout(output: &Output) -> String {
 fn list_names_what_is_shipped() {
     let text = stdout(&tyndall(&["list"]));
     assert_eq!(text, stdout(&tyndall(&[])));
-    for (name, description) in tyndall::preset::shipped() {
+    for (name, description) in tyndall::internals::preset::shipped() {
         assert!(description.len() > 20 && text.contains(name) && text.contains(&description), "{text}");
     }
     let json: serde_json::Value = serde_json::from_str(&stdout(&tyndall(&["list", "--json"]))).unwrap();
@@ -28,7 +28,7 @@ fn list_names_what_is_shipped() {
 fn show_tells_the_whole_preset() {
     let output = tyndall(&["show", "earth-paper", "--json", "--wavelengths", "440,550"]);
     let report: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
-    let planet = tyndall::preset::Planet::from_resolved(&report["preset"]).unwrap();
+    let planet = tyndall::internals::preset::Planet::from_resolved(&report["preset"]).unwrap();
     assert_eq!(report["hash"], planet.hash());
     let depth = planet.medium(&[440.0, 550.0]).vertical_optical_depth();
     assert_eq!(report["physics"]["optical_depth"], serde_json::json!(depth));
@@ -80,13 +80,13 @@ fn slips_are_named() {
 /// in x and y and 2 % in luminance; without air there is no light and no colour.
 #[test]
 fn show_tells_the_colour_of_the_zenith() {
-    use tyndall::geometry::Point;
-    use tyndall::geometry::view::View;
-    use tyndall::spectrum::{chromaticity, grid, hat_weights, weighted};
-    use tyndall::transport::solve::{Orders, Resolution, Solution};
+    use tyndall::internals::geometry::Point;
+    use tyndall::internals::geometry::view::View;
+    use tyndall::internals::spectrum::{chromaticity, grid, hat_weights, weighted};
+    use tyndall::internals::transport::solve::{Orders, Resolution, Solution};
     let report: serde_json::Value =
         serde_json::from_str(&stdout(&tyndall(&["show", "earth-paper", "--json"]))).unwrap();
-    let planet = tyndall::preset::load("earth-paper", &[]).unwrap();
+    let planet = tyndall::internals::preset::load("earth-paper", &[]).unwrap();
     let medium = planet.medium(&grid(9));
     let solution = Solution::new(&medium, &Resolution::EXACT, Orders::Converged { tolerance: 1e-3 });
     for (entry, elevation) in

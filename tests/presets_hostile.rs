@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use tyndall::preset::{self, Planet, Water};
+use tyndall::internals::preset::{self, Planet, Water};
 
 /// Every place in a value; of lists longer than `longest` the ends and a middle, since tables of optics have
 /// hundreds of numbers alike.
@@ -22,7 +22,7 @@ fn pointers(value: &Value, at: String, longest: usize, out: &mut Vec<String>) {
 
 /// Whether a water can be computed with, and comes back from its resolved form.
 fn sound_water(water: &Water) -> bool {
-    let medium = water.medium(&tyndall::spectrum::grid(9));
+    let medium = water.medium(&tyndall::internals::spectrum::grid(9));
     let finite = |v: &f64| v.is_finite() && *v >= 0.0;
     let phases = medium.scatterers.iter().flat_map(|s| &s.phase).map(|p| p.value(0.3));
     water.largest_depth > 0.0
@@ -35,7 +35,7 @@ fn sound_water(water: &Water) -> bool {
 }
 
 fn sound(planet: &Planet) -> bool {
-    let medium = planet.medium(&tyndall::spectrum::grid(9));
+    let medium = planet.medium(&tyndall::internals::spectrum::grid(9));
     let depths = medium.vertical_optical_depth();
     let finite = |v: &f64| v.is_finite() && *v >= 0.0;
     let phases = medium.constituents.iter().flat_map(|c| &c.phase).map(|p| p.value(0.3));

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 use std::fs;
 use std::path::PathBuf;
-use tyndall::preset;
+use tyndall::internals::preset;
 
 /// The files of a folder of presets.
 fn files(folder: &str) -> Vec<PathBuf> {

@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 use std::f64::consts::PI;
-use tyndall::preset::{self, Water};
-use tyndall::transport::slab::{Layer, Light, Slab, Streams, Surface, WaterOrders, leaving};
+use tyndall::internals::preset::{self, Water};
+use tyndall::internals::transport::slab::{Layer, Light, Slab, Streams, Surface, WaterOrders, leaving};
 
 /// A pond with a dye in it, nothing like any sea.
 fn pond() -> Value {

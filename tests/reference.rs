@@ -4,9 +4,9 @@
 mod common;
 
 use std::f64::consts::PI;
-use tyndall::geometry::Point;
-use tyndall::medium::{Constituent, DensityProfile, Medium, PhaseFunction, Role};
-use tyndall::reference::{Estimate, Settings, Tracer};
+use tyndall::internals::geometry::Point;
+use tyndall::internals::medium::{Constituent, DensityProfile, Medium, PhaseFunction, Role};
+use tyndall::internals::reference::{Estimate, Settings, Tracer};
 
 /// A planet with one constituent at one wavelength.
 fn planet(ground: f64, height: f64, albedo: f64, air: Vec<Constituent>) -> Medium {
@@ -382,7 +382,8 @@ fn agrees_with_mitsuba() {
 /// error to 13 %: 1.4 is two of both together. No answer has fewer paths than the least, where 0.1 % is reached.
 #[test]
 fn error_at_a_coarse_target_is_not_optimistic() {
-    let medium = tyndall::preset::load("earth-paper", &[]).expect("a shipped preset").medium(&[440.0]);
+    let medium =
+        tyndall::internals::preset::load("earth-paper", &[]).expect("a shipped preset").medium(&[440.0]);
     let tracer = Tracer::new(&medium, 0);
     for p in [view(0.0, 1.0, 0.5, 0.0), view(30e3, -1.0, 0.5, 0.0)] {
         let fine = tracer.estimate(&p, &Settings { seed: 1000, ..paths(1 << 20) });

@@ -1,16 +1,16 @@
 //! The layout three-atmosphere. That its reader understands it is shown by that reader
 //! (`scripts/validate-three-atmosphere`); here, what the tables hold.
 
-use tyndall::bake::{Product, bake};
-use tyndall::files::exr::from_exr_bytes;
-use tyndall::geometry::Point;
-use tyndall::geometry::view::View;
-use tyndall::layout::settings::Settings;
-use tyndall::layout::sky::{self, AerosolPhase, Component, Sky};
-use tyndall::layout::three_atmosphere::Bruneton;
-use tyndall::layout::three_atmosphere::{LAYOUT, ThreeAtmosphereLayout};
-use tyndall::preset::{self, Planet};
-use tyndall::transport::solve::{Orders, Resolution, Solution};
+use tyndall::internals::bake::{Product, bake};
+use tyndall::internals::files::exr::from_exr_bytes;
+use tyndall::internals::geometry::Point;
+use tyndall::internals::geometry::view::View;
+use tyndall::internals::layout::settings::Settings;
+use tyndall::internals::layout::sky::{self, AerosolPhase, Component, Sky};
+use tyndall::internals::layout::three_atmosphere::Bruneton;
+use tyndall::internals::layout::three_atmosphere::{LAYOUT, ThreeAtmosphereLayout};
+use tyndall::internals::preset::{self, Planet};
+use tyndall::internals::transport::solve::{Orders, Resolution, Solution};
 
 const FOLDER: &str = "in memory";
 
@@ -135,8 +135,9 @@ fn diff_compares_views() {
         folder
     };
     let (a, b) = (write("a", "0.1"), write("b", "0.8"));
-    let compare =
-        |a: &std::path::Path, b: &std::path::Path| tyndall::commands::diff::compare(a, b, 20).unwrap();
+    let compare = |a: &std::path::Path, b: &std::path::Path| {
+        tyndall::internals::commands::diff::compare(a, b, 20).unwrap()
+    };
     let same = compare(&a, &a);
     assert!(same.nothing() && same.views.iter().any(|v| v.layout == LAYOUT));
     let differ = compare(&a, &b);

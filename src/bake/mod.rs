@@ -9,10 +9,12 @@ mod lights;
 pub mod memory;
 pub(crate) mod pictures;
 mod pipeline;
+mod product;
 pub mod recolour;
 pub mod report;
 mod vectors;
 pub mod versions;
 
 pub use lights::Lights;
-pub use pipeline::{Product, bake, bake_in, check_folded};
+pub use pipeline::{bake, bake_in, check_folded};
+pub use product::Product;

@@ -3,6 +3,7 @@
 use super::doubts;
 use super::files::Files;
 use super::lights::Lights;
+use super::product::{IN_MEMORY, Product};
 use super::{coarse, describe, pictures, report, vectors};
 use crate::colour::samples as skies;
 use crate::colour::weights::Palette;
@@ -26,22 +27,10 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Every file of a bake, `bake.json` among them, and what is to be told.
-pub struct Product {
-    /// Path inside the bake, and content.
-    pub files: Vec<(String, Vec<u8>)>,
-    pub manifest: Manifest,
-    /// Processor time, all threads, that its light took to solve: now, or in a bake before.
-    pub light_cpu: Duration,
-}
-
 /// Residual above which a chosen number of orders is called too small.
 const RESIDUAL_WARNING: f64 = 0.01;
 /// Error of the energy balance above which the bake warns.
 const BALANCE_WARNING: f64 = 3e-3;
-/// What messages call a bake that is in no folder yet.
-const IN_MEMORY: &str = "the bake in memory";
-
 /// Bakes a planet. `stage` is called with the name of each stage as it begins. Errors: a medium without meaning,
 /// wavelengths or sizes that do not fit together, tables that cannot be encoded.
 pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -> Result<Product> {

@@ -379,10 +379,7 @@ fn make(folder: &Path, settings: &Settings, progress: &Progress, planet: &Planet
     let mut clock = progress.begin(&planet.name, stages(settings), &about);
     let product = bake(planet, settings, &mut |stage| clock.stage(stage))?;
     clock.stage("write");
-    for (file, bytes) in &product.files {
-        staging.write(file, bytes)?;
-    }
-    staging.commit()?;
+    product.write_into(staging)?;
     let gone = before.iter().filter(|name| !settings.layouts.iter().any(|layout| layout.name() == **name));
     gone.for_each(|name| progress.say(&format!("{}: {}", planet.name, left_out(name))));
     product.manifest.warnings.iter().for_each(|w| progress.say(&format!("warning: {}: {w}", planet.name)));

@@ -29,7 +29,7 @@ pub fn air_king_factor(wavelength_nm: f64, co2_ppm: f64) -> f64 {
 ///
 /// ```
 /// // Bodhaine et al. 1999, Table 3: about 4.51e-27 cm² at 550 nm and 360 ppm of CO2.
-/// let cross_section = tyndall::preset::air_cross_section(550.0, 360.0);
+/// let cross_section = tyndall::internals::preset::air_cross_section(550.0, 360.0);
 /// assert!((cross_section / 4.51e-31 - 1.0).abs() < 1e-3);
 /// ```
 pub fn air_cross_section(wavelength_nm: f64, co2_ppm: f64) -> f64 {

@@ -11,7 +11,7 @@ const SECOND: f64 = 1.4388e-2;
 /// wavelength in nm and a temperature in K, both positive. Relative error a few 1e-16.
 ///
 /// ```
-/// let sun = tyndall::spectrum::planck_law(500.0, 5778.0);
+/// let sun = tyndall::internals::spectrum::planck_law(500.0, 5778.0);
 /// assert!((sun / 2.637353833e13 - 1.0).abs() < 1e-9);
 /// ```
 pub fn planck_law(wavelength_nm: f64, temperature: f64) -> f64 {

@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use tyndall::bake::versions;
-use tyndall::layout;
+use tyndall::internals::bake::versions;
+use tyndall::internals::layout;
 
 /// Which bakes: what each holds that no other does. Their options come after those of [`SMALL`].
 const BAKES: [(&str, &str, &str); 13] = [

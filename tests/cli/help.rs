@@ -3,7 +3,7 @@
 use super::run::*;
 use clap::Args;
 use std::fs;
-use tyndall::commands;
+use tyndall::internals::commands;
 
 pub const COMMANDS: [&str; 14] = [
     "bake",

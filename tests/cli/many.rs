@@ -141,8 +141,8 @@ fn talk_of_memory() {
 #[cfg(target_os = "linux")]
 #[test]
 fn the_estimate_of_memory() {
-    use tyndall::layout::elek2010::Elek2010Layout;
-    use tyndall::layout::settings::Settings;
+    use tyndall::internals::layout::elek2010::Elek2010Layout;
+    use tyndall::internals::layout::settings::Settings;
     let dir = tempfile::tempdir().unwrap();
     for (text, size) in [("32x128x32x8", [32, 128, 32, 8]), ("48x128x48x8", [48, 128, 48, 8])] {
         let mut command = command();
@@ -153,8 +153,8 @@ fn the_estimate_of_memory() {
         let peak = 1e6 * peak.parse::<f64>().unwrap();
         let settings =
             Settings { layouts: vec![&Elek2010Layout], elek2010_size: size, ..Settings::default() };
-        let planet = tyndall::preset::load("earth-paper", &[]).unwrap();
-        let ratio = tyndall::bake::memory::estimate(&planet, &settings) as f64 / peak;
+        let planet = tyndall::internals::preset::load("earth-paper", &[]).unwrap();
+        let ratio = tyndall::internals::bake::memory::estimate(&planet, &settings) as f64 / peak;
         assert!((0.9..2.0).contains(&ratio), "{text}: estimate over {peak} bytes is {ratio}");
     }
 }
@@ -167,7 +167,7 @@ fn all_planets() {
     command.args(["bake", "--all", "--quiet", "--layout", "elek2010", "--out"]).arg(dir.path()).args(SMALL);
     let done = ran(command.output().unwrap());
     assert_eq!((done.code, done.err.as_str()), (Some(0), ""));
-    let mut shipped: Vec<&str> = tyndall::preset::shipped_names().collect();
+    let mut shipped: Vec<&str> = tyndall::internals::preset::shipped_names().collect();
     for name in &shipped {
         assert!(line(&done, &format!("{name} ")).contains(name), "{}", done.out);
         assert!(dir.path().join(name).join("bake.json").is_file(), "{name}");

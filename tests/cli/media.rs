@@ -42,11 +42,13 @@ fn an_absorber_alone() {
     assert!(answers[ZENITH].iter().all(|v| *v == 0.0), "{answers:?}");
     let nm: Vec<f64> =
         serde_json::from_value(manifest(&bake)["constants"]["four_wavelengths_nm"].clone()).unwrap();
-    let depth =
-        tyndall::preset::load("earth", &["constituents.air=null".into(), "constituents.aerosol=null".into()])
-            .unwrap()
-            .medium(&nm)
-            .vertical_optical_depth();
+    let depth = tyndall::internals::preset::load(
+        "earth",
+        &["constituents.air=null".into(), "constituents.aerosol=null".into()],
+    )
+    .unwrap()
+    .medium(&nm)
+    .vertical_optical_depth();
     for (radiance, depth) in answers[NADIR].iter().zip(depth) {
         let left = ALBEDO / PI * libm::exp(-2.0 * depth);
         assert!((radiance / left - 1.0).abs() < 1e-3, "{radiance} is not {left}");

@@ -1,6 +1,6 @@
 //! Constituents of test planets in few words.
 
-use tyndall::medium::{Constituent, DensityProfile, PhaseFunction, Role};
+use tyndall::internals::medium::{Constituent, DensityProfile, PhaseFunction, Role};
 
 pub const RAYLEIGH: PhaseFunction = PhaseFunction::Rayleigh { king_factor: 1.0 };
 

@@ -3,8 +3,8 @@
 
 use serde_json::Value;
 use std::path::PathBuf;
-use tyndall::geometry::Point;
-use tyndall::medium::{Constituent, DensityProfile, Medium, PhaseFunction, Role};
+use tyndall::internals::geometry::Point;
+use tyndall::internals::medium::{Constituent, DensityProfile, Medium, PhaseFunction, Role};
 
 /// One radiance of the oracle: view, wavelength number in the medium, radiance and standard error, 1/sr.
 #[derive(Clone, Copy, Debug)]

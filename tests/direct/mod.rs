@@ -2,7 +2,7 @@
 //! the library but the medium's numbers. The ground is a sphere around the origin.
 
 use std::f64::consts::PI;
-use tyndall::medium::{DensityProfile, Medium, PhaseFunction, Role};
+use tyndall::internals::medium::{DensityProfile, Medium, PhaseFunction, Role};
 
 pub type Vector = [f64; 3];
 

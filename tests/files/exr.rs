@@ -3,8 +3,10 @@
 use half::f16;
 use proptest::prelude::*;
 use std::path::Path;
-use tyndall::files::exr::{Spectral, from_exr_bytes, spectral_attributes, spectral_channel, to_exr_bytes};
-use tyndall::files::{Atlas, Attribute, Samples};
+use tyndall::internals::files::exr::{
+    Spectral, from_exr_bytes, spectral_attributes, spectral_channel, to_exr_bytes,
+};
+use tyndall::internals::files::{Atlas, Attribute, Samples};
 
 const FILE: &str = "t.exr";
 
@@ -229,7 +231,7 @@ fn an_oversized_picture_is_refused_before_it_is_made() {
     let mut bomb = sizes(200_000, 1, 1);
     bomb.resize(78_000_000, 0);
     let error = from_exr_bytes(Path::new(FILE), &bomb).unwrap_err().to_string();
-    let roomy = tyndall::machine::memory::available().is_none_or(|free| free > 400_000_000_000);
+    let roomy = tyndall::internals::machine::memory::available().is_none_or(|free| free > 400_000_000_000);
     assert!(roomy || error.contains("takes some 400.0 GB of memory, and "), "{error}");
 }
 

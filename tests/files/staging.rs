@@ -5,8 +5,8 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use tempfile::{TempDir, tempdir};
-use tyndall::files::signals::handle_interrupts;
-use tyndall::files::staging::Staging;
+use tyndall::internals::files::signals::handle_interrupts;
+use tyndall::internals::files::staging::Staging;
 
 /// A bake of two files, both holding `text`.
 pub fn bake(target: &Path, text: &str) -> tyndall::Result<()> {

@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::{TempDir, tempdir};
-use tyndall::commands::verify::{Args, differences, run};
-use tyndall::files::exr::to_exr_bytes;
-use tyndall::files::manifest::*;
-use tyndall::files::staging::Staging;
-use tyndall::files::{Atlas, Samples};
+use tyndall::internals::commands::verify::{Args, differences, run};
+use tyndall::internals::files::exr::to_exr_bytes;
+use tyndall::internals::files::manifest::*;
+use tyndall::internals::files::staging::Staging;
+use tyndall::internals::files::{Atlas, Samples};
 
 /// A table of 3 × 2 × 4 texels, in the file `phobos/scattering.exr` of `staging`.
 fn table(staging: &Staging) -> Table {
@@ -56,7 +56,7 @@ fn manifest(staging: &Staging) -> Manifest {
     let resolved = json!({"radius_m": 11266.7, "constituents": [{"g": 0.1 + 0.2, "z": 1e-300}], "a": 1.0});
     Manifest {
         schema_version: SCHEMA_VERSION,
-        tool: Tool::this(tyndall::bake::versions::all()),
+        tool: Tool::this(tyndall::internals::bake::versions::all()),
         preset: Preset { name: "phobos".into(), hash: hash_of(&resolved), resolved },
         settings: json!({"orders": "auto", "shipped_preset": true}),
         wavelengths: Wavelengths { kind: GridKind::Points, nm: vec![440.0, 1.0 / 3.0, f64::MIN_POSITIVE] },
@@ -231,7 +231,7 @@ fn files_of_others_are_no_difference() {
         fs::write(bake.join(file), "mine").unwrap();
     }
     assert_eq!(differences(&bake, |_| None).unwrap(), []);
-    let told = tyndall::files::foreign::foreign(&bake);
+    let told = tyndall::internals::files::foreign::foreign(&bake);
     assert_eq!(told, [".godot/uid_cache.bin", "notes.txt", "phobos/scattering.exr.meta"].map(PathBuf::from));
     run(&Args { bake: bake.join(MANIFEST), json: true }).unwrap();
 }

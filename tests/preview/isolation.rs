@@ -9,7 +9,8 @@ fn used(source: &str) -> Vec<String> {
         text.trim().chars().take_while(|c| c.is_alphanumeric() || *c == '_' || *c == ':').collect()
     };
     source
-        .split("tyndall::")
+        .split("tyndall::internals::")
+        .flat_map(|part| part.split("tyndall::"))
         .skip(1)
         .flat_map(|rest| match rest.strip_prefix('{') {
             Some(list) => list.split('}').next().unwrap().split(',').map(path).collect::<Vec<_>>(),
@@ -33,7 +34,9 @@ const READERS: [&str; 8] = [
 #[test]
 fn no_solver_code_is_used() {
     assert_eq!(
-        used("use tyndall::{Error, Result};\nuse tyndall::bake::{self, run};\ntyndall::layout::sky::open()"),
+        used(
+            "use tyndall::{Error, Result};\nuse tyndall::internals::bake::{self, run};\ntyndall::internals::layout::sky::open()"
+        ),
         ["Error", "Result", "bake::", "layout::sky::open"]
     );
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/bin/tyndall-preview");

@@ -2,8 +2,8 @@
 
 use super::worlds::{COARSE, light, point};
 use crate::common::oracle_medium;
-use tyndall::machine::isa::Isa;
-use tyndall::transport::solve::{Orders, Solution};
+use tyndall::internals::machine::isa::Isa;
+use tyndall::internals::transport::solve::{Orders, Solution};
 
 /// Every number of a solution and of some views, as bits.
 fn bits(threads: usize, orders: Orders) -> Vec<u64> {

@@ -2,9 +2,9 @@
 
 use super::worlds::{COARSE, CONVERGED, constituent, exponential, light, planet, point, small_world};
 use std::f64::consts::PI;
-use tyndall::medium::{DensityProfile, Medium, PhaseFunction, Role};
-use tyndall::transport::exact::Radiance;
-use tyndall::transport::solve::{Orders, Solution};
+use tyndall::internals::medium::{DensityProfile, Medium, PhaseFunction, Role};
+use tyndall::internals::transport::exact::Radiance;
+use tyndall::internals::transport::solve::{Orders, Solution};
 
 fn seen(solution: &Solution, medium: &Medium, altitude: f64, mu: f64, sun: f64, azimuth: f64) -> Radiance {
     light(solution, medium, &point(altitude, mu, sun, azimuth)).expect("a view that meets the air")

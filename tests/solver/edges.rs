@@ -1,19 +1,19 @@
 //! A cloud with edges in tables of few altitudes.
 
 use std::path::Path;
-use tyndall::bake::bake;
-use tyndall::files::exr::from_exr_bytes;
-use tyndall::geometry::Point;
-use tyndall::geometry::view::View;
-use tyndall::layout::compact::CompactLayout;
-use tyndall::layout::compact::Sizes;
-use tyndall::layout::settings::Settings;
-use tyndall::layout::sky::{self, AerosolPhase, Channels, Component, Sky};
-use tyndall::medium::DensityProfile;
-use tyndall::preset::{self, Planet};
-use tyndall::quality::Distribution;
-use tyndall::spectrum::grid;
-use tyndall::transport::solve::{Orders, Resolution, Solution};
+use tyndall::internals::bake::bake;
+use tyndall::internals::files::exr::from_exr_bytes;
+use tyndall::internals::geometry::Point;
+use tyndall::internals::geometry::view::View;
+use tyndall::internals::layout::compact::CompactLayout;
+use tyndall::internals::layout::compact::Sizes;
+use tyndall::internals::layout::settings::Settings;
+use tyndall::internals::layout::sky::{self, AerosolPhase, Channels, Component, Sky};
+use tyndall::internals::medium::DensityProfile;
+use tyndall::internals::preset::{self, Planet};
+use tyndall::internals::quality::Distribution;
+use tyndall::internals::spectrum::grid;
+use tyndall::internals::transport::solve::{Orders, Resolution, Solution};
 
 /// A cloud from 20 to 30 km, thin enough for the sun to be seen through, in the air of `earth-paper`, in tables whose
 /// altitudes lie at 19, 26 and 35 km there. From 27 to 29 km rays upwards cross cloud, those of the next altitude do not;

@@ -1,9 +1,9 @@
 //! Energy: what enters a planet's shell leaves it, is absorbed by the air or by the ground.
 
 use super::worlds::{CONVERGED, RAYLEIGH, constituent, exponential, planet, small_world};
-use tyndall::medium::{Medium, PhaseFunction, Role};
-use tyndall::transport::balance::{Balance, balance};
-use tyndall::transport::solve::{Resolution, Solution};
+use tyndall::internals::medium::{Medium, PhaseFunction, Role};
+use tyndall::internals::transport::balance::{Balance, balance};
+use tyndall::internals::transport::solve::{Resolution, Solution};
 
 /// Thin air with phase functions that the moments hold.
 const EASY: f64 = 1e-3;

@@ -1,10 +1,10 @@
 //! The solver against the literal Algorithm 1: another method for the same equations.
 
 use super::worlds::{CONVERGED, small_world};
-use tyndall::algorithm1::{Literal, Settings, bake};
-use tyndall::geometry::view::View;
-use tyndall::medium::Medium;
-use tyndall::transport::solve::{Orders, Resolution, Solution};
+use tyndall::internals::algorithm1::{Literal, Settings, bake};
+use tyndall::internals::geometry::view::View;
+use tyndall::internals::medium::Medium;
+use tyndall::internals::transport::solve::{Orders, Resolution, Solution};
 
 fn literal(medium: &Medium, size: [usize; 4], samples: usize, orders: usize) -> Literal {
     let settings = Settings { size, orders, samples, extinction_size: [64, 128], ..Settings::default() };

@@ -1,11 +1,11 @@
 //! The solver against the Monte Carlo reference, which shares the medium with it and nothing else.
 
 use super::worlds::{CONVERGED, point, total};
-use tyndall::geometry::Point;
-use tyndall::medium::Medium;
-use tyndall::preset;
-use tyndall::reference::{Estimate, Settings, Tracer};
-use tyndall::transport::solve::{Orders, Resolution, Solution};
+use tyndall::internals::geometry::Point;
+use tyndall::internals::medium::Medium;
+use tyndall::internals::preset;
+use tyndall::internals::reference::{Estimate, Settings, Tracer};
+use tyndall::internals::transport::solve::{Orders, Resolution, Solution};
 
 /// What the solver may differ by beside three standard errors, by the height of the sun.
 struct Bounds {

@@ -2,7 +2,7 @@
 
 use super::worlds::total;
 use crate::common::{OracleRow, chi_square, oracle_medium, oracle_rows};
-use tyndall::transport::solve::{Orders, Resolution, Solution};
+use tyndall::internals::transport::solve::{Orders, Resolution, Solution};
 
 /// Mean of ours / theirs − 1 with weights of their errors, and its own error.
 fn mean_difference(rows: &[OracleRow], answers: &[(f64, f64)]) -> (f64, f64) {

@@ -1,9 +1,9 @@
 //! Awkward planets and views: the answer is finite and never negative.
 
 use super::worlds::{COARSE, CONVERGED, RAYLEIGH, constituent, exponential, light, planet};
-use tyndall::geometry::Point;
-use tyndall::medium::{Constituent, Medium, PhaseFunction, Role};
-use tyndall::transport::solve::Solution;
+use tyndall::internals::geometry::Point;
+use tyndall::internals::medium::{Constituent, Medium, PhaseFunction, Role};
+use tyndall::internals::transport::solve::Solution;
 
 /// From the ground to the very top: zenith, nadir, the horizontal and both sides of the horizon (0.1° off), with the
 /// sun from −18° to overhead, towards it and away.

@@ -2,15 +2,15 @@
 
 use serde_json::Value;
 use std::path::Path;
-use tyndall::bake::bake;
-use tyndall::geometry::Point;
-use tyndall::geometry::view::View;
-use tyndall::layout::settings::Settings;
-use tyndall::layout::sky::{self, AerosolPhase, Component, Sky};
-use tyndall::preset;
-use tyndall::quality::{Distribution, REGIONS, relative_errors, views};
-use tyndall::spectrum::grid;
-use tyndall::transport::solve::{Orders, Resolution, Solution};
+use tyndall::internals::bake::bake;
+use tyndall::internals::geometry::Point;
+use tyndall::internals::geometry::view::View;
+use tyndall::internals::layout::settings::Settings;
+use tyndall::internals::layout::sky::{self, AerosolPhase, Component, Sky};
+use tyndall::internals::preset;
+use tyndall::internals::quality::{Distribution, REGIONS, relative_errors, views};
+use tyndall::internals::spectrum::grid;
+use tyndall::internals::transport::solve::{Orders, Resolution, Solution};
 
 /// Median and 95th percentile of relative radiance that the compact layout is made for, by region of the report.
 /// Table steps are a few per cent of a radiance, cubic nowhere, so an error of half a per cent by day is what the
@@ -51,7 +51,7 @@ fn baked(name: &str) -> Baked {
 /// The compact tables of a preset against a finer solve, on views that the report does not use.
 fn compact_is_close_to_the_truth(name: &str) {
     let Baked { sky, quality } = baked(name);
-    let tyndall::layout::sky::Channels::Wavelengths(nm) = sky.channels() else {
+    let tyndall::internals::layout::sky::Channels::Wavelengths(nm) = sky.channels() else {
         panic!("compact holds wavelengths")
     };
     let medium = preset::load(name, &[]).expect("a shipped preset").medium(&nm);

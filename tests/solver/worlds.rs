@@ -1,11 +1,11 @@
 //! Planets, resolutions and short ways to ask the solver, for the tests beside.
 
 pub use crate::constituents::{RAYLEIGH, constituent, exponential};
-use tyndall::geometry::Point;
-use tyndall::geometry::view::View;
-use tyndall::medium::{Constituent, Medium, PhaseFunction, Role};
-use tyndall::transport::exact::Radiance;
-use tyndall::transport::solve::{LevelCounts, Orders, Resolution, Solution};
+use tyndall::internals::geometry::Point;
+use tyndall::internals::geometry::view::View;
+use tyndall::internals::medium::{Constituent, Medium, PhaseFunction, Role};
+use tyndall::internals::transport::exact::Radiance;
+use tyndall::internals::transport::solve::{LevelCounts, Orders, Resolution, Solution};
 
 pub const CONVERGED: Orders = Orders::Converged { tolerance: 1e-4 };
 

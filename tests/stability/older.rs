@@ -1,7 +1,7 @@
 //! The table says where older methods fail.
 
-use tyndall::chart::stability::{Shared, cases, markdown, run};
-use tyndall::methods::Family;
+use tyndall::internals::chart::stability::{Shared, cases, markdown, run};
+use tyndall::internals::methods::Family;
 
 /// Without gas, Bruneton's guess of green and blue from the red of aerosols divides by the gas's coefficient, 0: no
 /// number comes out wherever the sky is lit, and the table says NaN. The marches and ours do not mind.

@@ -1,7 +1,7 @@
 //! Our layouts: a number everywhere, never negative, and near the truth.
 
-use tyndall::chart::stability::{Case, Outcome, Shared, cases, run};
-use tyndall::methods::Family;
+use tyndall::internals::chart::stability::{Case, Outcome, Shared, cases, run};
+use tyndall::internals::methods::Family;
 
 /// Largest median and 95th percentile of the relative error of RGB by day, of tables a thirtieth as large as the
 /// baker's own, on views that lie where tables are worst; and whether the bake has to warn of the layout, because more

@@ -1,9 +1,9 @@
 //! What cannot be mended is told.
 
-use tyndall::bake::bake;
-use tyndall::layout::compact::Sizes;
-use tyndall::layout::settings::Settings;
-use tyndall::preset;
+use tyndall::internals::bake::bake;
+use tyndall::internals::layout::compact::Sizes;
+use tyndall::internals::layout::settings::Settings;
+use tyndall::internals::preset;
 
 fn warnings(settings: &Settings) -> Vec<String> {
     let planet = preset::load("earth-paper", &[]).unwrap();

@@ -2,8 +2,8 @@
 
 use super::media::*;
 use std::f64::consts::PI;
-use tyndall::medium::PhaseFunction::{HenyeyGreenstein, Isotropic, Rayleigh};
-use tyndall::transport::slab::{Dome, Layer, Streams, Surface, fresnel, phase_mean};
+use tyndall::internals::medium::PhaseFunction::{HenyeyGreenstein, Isotropic, Rayleigh};
+use tyndall::internals::transport::slab::{Dome, Layer, Streams, Surface, fresnel, phase_mean};
 
 fn close(found: f64, expected: f64, relative: f64) {
     assert!((found / expected - 1.0).abs() < relative, "{found} is not {expected}");
@@ -119,7 +119,7 @@ fn streams_are_enough() {
     let medium = water(0.1, 0.9, HenyeyGreenstein { g: 0.92 }, 1.34, 0.2);
     let fine = slab_of(&medium, Streams { per_panel: 24 });
     let coarse = slab(&medium);
-    let up = |slab: &tyndall::transport::slab::Slab, view: f64, sun: f64| {
+    let up = |slab: &tyndall::internals::transport::slab::Slab, view: f64, sun: f64| {
         let layer = Layer::new(slab, 8.0);
         let (beam, view) = (slab.beam(sun), slab.view(view));
         let pair = slab.pair(&beam, &view, means(&medium, view.mu, sun));

@@ -1,7 +1,9 @@
 //! Waters for tests, and their light from the solver.
 
-use tyndall::medium::{PhaseFunction, WaterMedium, WaterScatterer};
-use tyndall::transport::slab::{Dome, Layer, Pair, Slab, Streams, Surface, phase_mean, seabed_radiance};
+use tyndall::internals::medium::{PhaseFunction, WaterMedium, WaterScatterer};
+use tyndall::internals::transport::slab::{
+    Dome, Layer, Pair, Slab, Streams, Surface, phase_mean, seabed_radiance,
+};
 
 /// One wavelength, one scatterer.
 pub fn water(absorption: f64, scattering: f64, phase: PhaseFunction, n: f64, bed: f64) -> WaterMedium {

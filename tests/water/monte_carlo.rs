@@ -1,8 +1,8 @@
 //! The slab solver, surface and bed included, against Monte Carlo: two codes without a common line of transport.
 
 use super::media::*;
-use tyndall::medium::PhaseFunction::{self, DoubleHenyeyGreenstein, HenyeyGreenstein, Isotropic};
-use tyndall::reference::water::{Look, Source, WaterTracer};
+use tyndall::internals::medium::PhaseFunction::{self, DoubleHenyeyGreenstein, HenyeyGreenstein, Isotropic};
+use tyndall::internals::reference::water::{Look, Source, WaterTracer};
 
 /// Largest difference that is neither noise (three standard errors) nor expected.
 const WORST: f64 = 0.01;
@@ -13,7 +13,7 @@ fn agrees(found: f64, (mean, stderr): (f64, f64), whole: f64, what: &str) {
     assert!(stderr < 0.05 * whole, "{what}: the reference is too noisy to judge: {mean} ± {stderr}");
 }
 
-fn check(medium: &tyndall::medium::WaterMedium, depth: f64, paths: u64) {
+fn check(medium: &tyndall::internals::medium::WaterMedium, depth: f64, paths: u64) {
     let tracer = WaterTracer::new(medium, 0, depth);
     for (view, sun) in [(1.0, 0.8), (0.5, 0.3), (0.15, 0.95)] {
         let what = format!("depth {depth} view {view} sun {sun}");

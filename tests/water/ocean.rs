@@ -1,9 +1,9 @@
 //! Shipped waters against what is published of natural ones.
 
 use super::media::*;
-use tyndall::medium::WaterMedium;
-use tyndall::preset::load_water;
-use tyndall::transport::slab::Layer;
+use tyndall::internals::medium::WaterMedium;
+use tyndall::internals::preset::load_water;
+use tyndall::internals::transport::slab::Layer;
 
 /// A shipped water at one wavelength.
 fn at(name: &str, nm: f64) -> WaterMedium {

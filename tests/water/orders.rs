@@ -1,10 +1,10 @@
 //! Light by the number of its scatterings, and what depends on azimuth: against Monte Carlo.
 
 use super::media::*;
-use tyndall::medium::PhaseFunction::{HenyeyGreenstein, Isotropic, Rayleigh};
-use tyndall::medium::WaterMedium;
-use tyndall::reference::water::{Look, Source, WaterTracer};
-use tyndall::transport::slab::{
+use tyndall::internals::medium::PhaseFunction::{HenyeyGreenstein, Isotropic, Rayleigh};
+use tyndall::internals::medium::WaterMedium;
+use tyndall::internals::reference::water::{Look, Source, WaterTracer};
+use tyndall::internals::transport::slab::{
     Azimuths, Layer, Light, Surface, WaterOrders, azimuth_half_spread, leaving, leaving_at,
 };
 

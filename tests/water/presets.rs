@@ -1,9 +1,9 @@
 //! Presets of waters: shipped ones hold, bad ones are refused with file, key, value and reason.
 
 use super::media::{leaving, leaving_of_sky};
-use tyndall::medium::WaterMedium;
-use tyndall::preset::{Water, is_water, load_water, shipped_water_names};
-use tyndall::reference::water::{Look, Source, WaterTracer};
+use tyndall::internals::medium::WaterMedium;
+use tyndall::internals::preset::{Water, is_water, load_water, shipped_water_names};
+use tyndall::internals::reference::water::{Look, Source, WaterTracer};
 
 /// Every shipped water reads, and its resolved form gives the same bits back.
 #[test]

@@ -1,12 +1,12 @@
 //! The sky's light on water: parts, rings, and a planet's own sky against Monte Carlo from the eye to the sun.
 
 use super::media::*;
-use tyndall::layout::water::{FINE, Skylight, Split};
-use tyndall::medium::PhaseFunction::HenyeyGreenstein;
-use tyndall::reference::Tracer;
-use tyndall::reference::water::{Air, Look, WaterTracer};
-use tyndall::transport::slab::{Dome, Layer, Light, WaterOrders, gauss_legendre, leaving};
-use tyndall::transport::solve::{Orders, Resolution, Solution};
+use tyndall::internals::layout::water::{FINE, Skylight, Split};
+use tyndall::internals::medium::PhaseFunction::HenyeyGreenstein;
+use tyndall::internals::reference::Tracer;
+use tyndall::internals::reference::water::{Air, Look, WaterTracer};
+use tyndall::internals::transport::slab::{Dome, Layer, Light, WaterOrders, gauss_legendre, leaving};
+use tyndall::internals::transport::solve::{Orders, Resolution, Solution};
 
 /// A sky is as good as the beams that it consists of: both parts, each of unit irradiance, and rings of their
 /// radiance give the same light, of water and bed.
@@ -38,7 +38,7 @@ fn a_sky_is_the_sum_of_its_beams() {
 /// They agree within 1 % and the noise; two parts in place of the rings within 2 %.
 #[test]
 fn air_and_water_against_monte_carlo() {
-    let planet = tyndall::preset::load("earth-paper", &[]).unwrap();
+    let planet = tyndall::internals::preset::load("earth-paper", &[]).unwrap();
     let air = planet.medium(&[460.0]);
     let solution = Solution::new(&air, &Resolution::TABLES, Orders::Converged { tolerance: 1e-4 });
     let split = Split::new(&air, &solution);

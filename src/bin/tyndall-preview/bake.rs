@@ -3,10 +3,10 @@
 use crate::sea::Water;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use tyndall::files::manifest::{Manifest, Table};
-use tyndall::files::{Atlas, Samples};
-use tyndall::layout::shader;
-use tyndall::layout::sky::{self, Sky};
+use tyndall::internals::files::manifest::{Manifest, Table};
+use tyndall::internals::files::{Atlas, Samples};
+use tyndall::internals::layout::shader;
+use tyndall::internals::layout::sky::{self, Sky};
 use tyndall::{Error, Result};
 
 /// The layouts that there are shaders for.

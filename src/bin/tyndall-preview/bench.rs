@@ -10,7 +10,7 @@ use crate::painter::{Look, Painter};
 use crate::resources::Method;
 use crate::stopwatch::{Stopwatch, Times};
 use crate::target::{MEASURED, SHOWN, Target};
-use tyndall::machine::output::print;
+use tyndall::internals::machine::output::print;
 use tyndall::{Error, Result};
 
 /// Steps that are taken for converged, along the view and towards the sun. Their product stays below 65535, where

@@ -1,7 +1,7 @@
 //! Where the observer stands and looks, and where the star is.
 
 use glam::{DVec3, dvec3};
-use tyndall::geometry::Point;
+use tyndall::internals::geometry::Point;
 
 /// How the picture is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]

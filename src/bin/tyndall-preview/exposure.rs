@@ -3,9 +3,9 @@
 use crate::bake::Bake;
 use crate::camera::Camera;
 use glam::{DMat3, DVec3};
-use tyndall::geometry::Point;
-use tyndall::layout::sky::Component;
-use tyndall::layout::water::lookup::WaterView;
+use tyndall::internals::geometry::Point;
+use tyndall::internals::layout::sky::Component;
+use tyndall::internals::layout::water::lookup::WaterView;
 
 /// Either found from the picture or an exposure value at ISO 100.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -10,7 +10,7 @@ use crate::painter::{Look, Painter};
 use crate::target::{SHOWN, Target};
 use std::io::BufWriter;
 use std::path::Path;
-use tyndall::machine::output::print;
+use tyndall::internals::machine::output::print;
 use tyndall::{Error, Result};
 
 /// Draws the frame of the options and writes it as PNG.

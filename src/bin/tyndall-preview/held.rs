@@ -4,7 +4,7 @@
 use crate::bake::Bake;
 use crate::camera::Camera;
 use crate::frame::View;
-use tyndall::geometry::Point;
+use tyndall::internals::geometry::Point;
 
 /// Rows and columns of the directions that are looked at.
 const ACROSS: u32 = 7;
@@ -38,5 +38,5 @@ fn line(bake: &Bake, point: &Point) -> Option<(&'static str, String)> {
 
 /// A warning on standard error.
 pub fn warn(text: &str) {
-    tyndall::machine::output::say(&format!("warning: {text}"));
+    tyndall::internals::machine::output::say(&format!("warning: {text}"));
 }

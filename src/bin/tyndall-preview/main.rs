@@ -29,13 +29,13 @@ use clap::Parser;
 use gpu::Gpu;
 use options::Options;
 use tyndall::Error;
-use tyndall::machine::output;
+use tyndall::internals::machine::output;
 
 fn main() -> std::process::ExitCode {
     hush();
     let result = match Options::try_parse() {
         Ok(options) => run(&options).and_then(|()| output::heard()),
-        Err(error) => tyndall::commands::refused(&error),
+        Err(error) => tyndall::internals::commands::refused(&error),
     };
     match result {
         Ok(()) => std::process::ExitCode::SUCCESS,

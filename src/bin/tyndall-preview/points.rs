@@ -8,11 +8,11 @@ use crate::sea::Sea;
 use std::io::Write;
 use std::path::Path;
 use tyndall::Result;
-use tyndall::files::points::{Answer, read_points, write_answers};
-use tyndall::geometry::Point;
-use tyndall::layout::sky::Channels;
-use tyndall::layout::water::lookup::WaterView;
-use tyndall::machine::output::stream;
+use tyndall::internals::files::points::{Answer, read_points, write_answers};
+use tyndall::internals::geometry::Point;
+use tyndall::internals::layout::sky::Channels;
+use tyndall::internals::layout::water::lookup::WaterView;
+use tyndall::internals::machine::output::stream;
 
 /// Reads views, asks the GPU, writes the answers.
 ///

@@ -3,7 +3,7 @@
 use crate::air::Air;
 use crate::bake::{Bake, Layout, Texels};
 use crate::gpu::Gpu;
-use tyndall::layout::shader::{COMPACT, ELEK2010, SHELL, SLICES, WATER};
+use tyndall::internals::layout::shader::{COMPACT, ELEK2010, SHELL, SLICES, WATER};
 use tyndall::{Error, Result};
 
 const BINDINGS: &str = include_str!("wgsl/bindings.wgsl");

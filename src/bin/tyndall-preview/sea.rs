@@ -4,10 +4,10 @@ use crate::bake::{Bake, Texels};
 use crate::gpu::Gpu;
 use crate::resources::{texture, texture_entry, uniform_entry};
 use bytemuck::{Pod, Zeroable};
-use tyndall::files::manifest::Manifest;
-use tyndall::layout::shader::{TableConstants, four, rgb_rows};
-use tyndall::layout::sky;
-use tyndall::layout::water::lookup as water;
+use tyndall::internals::files::manifest::Manifest;
+use tyndall::internals::layout::shader::{TableConstants, four, rgb_rows};
+use tyndall::internals::layout::sky;
+use tyndall::internals::layout::water::lookup as water;
 use tyndall::{Error, Result};
 
 /// Tables of a water, in the order of their bindings; `{}` stands for its name.
@@ -51,8 +51,9 @@ impl Water {
         let slice = bake.waters().position(|w| w == name).ok_or_else(|| absent(bake, name))?;
         // Of the layout, what this water needs: there may be sixteen, and tables for observers under water.
         let names = TABLES.map(|table| table.replace("{}", name));
-        let needed =
-            |t: &&tyndall::files::manifest::Table| t.layout == water::LAYOUT && names.contains(&t.name);
+        let needed = |t: &&tyndall::internals::files::manifest::Table| {
+            t.layout == water::LAYOUT && names.contains(&t.name)
+        };
         let tables = bake.manifest.tables.iter().filter(needed).cloned().collect();
         let manifest = Manifest { tables, ..bake.manifest.clone() };
         let pictures = sky::pictures(&bake.folder, &manifest, water::LAYOUT)?;

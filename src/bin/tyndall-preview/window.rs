@@ -16,8 +16,8 @@ use crate::target::SHOWN;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant, SystemTime};
-use tyndall::files::manifest::MANIFEST;
-use tyndall::machine::output::{print, say};
+use tyndall::internals::files::manifest::MANIFEST;
+use tyndall::internals::machine::output::{print, say};
 use tyndall::{Error, Result};
 use winit::application::ApplicationHandler;
 use winit::error::EventLoopError;
@@ -196,10 +196,10 @@ impl App {
         let now = written(&self.bake.folder);
         if now.is_some() && now != self.written {
             let folder = self.bake.folder.clone();
-            let has = |m: &tyndall::files::manifest::Manifest| {
+            let has = |m: &tyndall::internals::files::manifest::Manifest| {
                 m.tables.iter().any(|t| t.layout == self.bake.layout.name())
             };
-            let layout = tyndall::files::manifest::Manifest::read(&folder).ok().filter(has);
+            let layout = tyndall::internals::files::manifest::Manifest::read(&folder).ok().filter(has);
             let layout = layout.map(|_| self.bake.layout);
             self.load(&folder, layout);
         }

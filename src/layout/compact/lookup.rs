@@ -23,7 +23,7 @@ pub struct Compact {
 }
 
 impl Compact {
-    pub(in crate::layout) fn new(source: &Source) -> Result<Self> {
+    pub(in crate::internals::layout) fn new(source: &Source) -> Result<Self> {
         // In the order of the phase table's rows, which is that of the manifest.
         let names: Vec<String> = source
             .manifest

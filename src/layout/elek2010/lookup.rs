@@ -21,7 +21,7 @@ pub struct Elek2010Sky {
 }
 
 impl Elek2010Sky {
-    pub(in crate::layout) fn new(source: &Source) -> Result<Self> {
+    pub(in crate::internals::layout) fn new(source: &Source) -> Result<Self> {
         let illuminance = source.number("star_illuminance_lx")?;
         let rgb = source.matrix("rgb_from_four")?;
         Ok(Elek2010Sky {

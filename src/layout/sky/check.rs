@@ -8,7 +8,7 @@ use crate::medium::check_shell;
 
 impl Source<'_> {
     /// Errors: `File` with the key of the first number that no bake has.
-    pub(in crate::layout) fn check(&self) -> error::Result<()> {
+    pub(in crate::internals::layout) fn check(&self) -> error::Result<()> {
         self.check_constants().map_err(|reason| self.refuse(format!("bake.json: {reason}")))?;
         for table in self.manifest.tables.iter().filter(|t| t.layout == self.layout) {
             let (_, atlas) = self.table(&table.name)?;

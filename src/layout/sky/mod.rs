@@ -3,7 +3,7 @@
 //! Knows manifests and decoded pictures, nothing of presets or of the solver.
 
 mod check;
-pub(in crate::layout) mod volume;
+pub(in crate::internals::layout) mod volume;
 
 use crate::error::{Error, Result};
 use crate::files::bounded_read;
@@ -109,15 +109,15 @@ pub fn picture(folder: &Path, table: &Table) -> Result<Atlas> {
 
 /// Where a layout's tables come from.
 pub struct Source<'a> {
-    pub(in crate::layout) bake: &'a Path,
-    pub(in crate::layout) manifest: &'a Manifest,
-    pub(in crate::layout) layout: &'a str,
-    pub(in crate::layout) pictures: &'a BTreeMap<String, Atlas>,
+    pub(in crate::internals::layout) bake: &'a Path,
+    pub(in crate::internals::layout) manifest: &'a Manifest,
+    pub(in crate::internals::layout) layout: &'a str,
+    pub(in crate::internals::layout) pictures: &'a BTreeMap<String, Atlas>,
 }
 
 impl<'a> Source<'a> {
     /// Errors: `File` with the key of the first number of the manifest that no bake has.
-    pub(in crate::layout) fn new(
+    pub(in crate::internals::layout) fn new(
         bake: &'a Path,
         manifest: &'a Manifest,
         layout: &'a str,
@@ -128,11 +128,11 @@ impl<'a> Source<'a> {
         Ok(source)
     }
 
-    pub(in crate::layout) fn refuse(&self, reason: String) -> Error {
+    pub(in crate::internals::layout) fn refuse(&self, reason: String) -> Error {
         Error::file(self.bake, reason)
     }
 
-    pub(in crate::layout) fn table(&self, name: &str) -> Result<(&Table, &Atlas)> {
+    pub(in crate::internals::layout) fn table(&self, name: &str) -> Result<(&Table, &Atlas)> {
         let found = self.manifest.tables.iter().find(|t| t.layout == self.layout && t.name == name);
         match (found, self.pictures.get(name)) {
             (Some(table), Some(atlas)) => Ok((table, atlas)),
@@ -140,33 +140,33 @@ impl<'a> Source<'a> {
         }
     }
 
-    pub(in crate::layout) fn has(&self, name: &str) -> bool {
+    pub(in crate::internals::layout) fn has(&self, name: &str) -> bool {
         self.manifest.tables.iter().any(|t| t.layout == self.layout && t.name == name)
     }
 
-    pub(in crate::layout) fn volume(&self, name: &str) -> Result<Volume> {
+    pub(in crate::internals::layout) fn volume(&self, name: &str) -> Result<Volume> {
         let (table, atlas) = self.table(name)?;
         Volume::new(table, atlas).map_err(|reason| self.refuse(reason))
     }
 
-    pub(in crate::layout) fn plane(&self, name: &str) -> Result<Plane> {
+    pub(in crate::internals::layout) fn plane(&self, name: &str) -> Result<Plane> {
         let (table, atlas) = self.table(name)?;
         Plane::new(table, atlas).map_err(|reason| self.refuse(reason))
     }
 
     /// A list of numbers of the manifest.
-    pub(in crate::layout) fn constant(&self, name: &str) -> Result<Vec<f64>> {
+    pub(in crate::internals::layout) fn constant(&self, name: &str) -> Result<Vec<f64>> {
         let found = self.manifest.constants.get(name);
         found.cloned().ok_or_else(|| self.refuse(format!("bake.json: constants.{name} is missing")))
     }
 
-    pub(in crate::layout) fn number(&self, name: &str) -> Result<f64> {
+    pub(in crate::internals::layout) fn number(&self, name: &str) -> Result<f64> {
         let list = self.constant(name)?;
         list.first().copied().ok_or_else(|| self.refuse(format!("bake.json: constants.{name} is empty")))
     }
 
     /// A colour matrix as rows R, G, B.
-    pub(in crate::layout) fn matrix(&self, name: &str) -> Result<Vec<Vec<f64>>> {
+    pub(in crate::internals::layout) fn matrix(&self, name: &str) -> Result<Vec<Vec<f64>>> {
         let found = self.manifest.colour.matrices.get(name);
         match found {
             Some(m) if m.len() == 3 => Ok(m.clone()),
@@ -178,6 +178,6 @@ impl<'a> Source<'a> {
     }
 }
 
-pub(in crate::layout) fn multiply(matrix: &[Vec<f64>], values: &[f64]) -> [f64; 3] {
+pub(in crate::internals::layout) fn multiply(matrix: &[Vec<f64>], values: &[f64]) -> [f64; 3] {
     std::array::from_fn(|c| matrix[c].iter().zip(values).map(|(m, v)| m * v).sum())
 }

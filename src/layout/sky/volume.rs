@@ -5,13 +5,13 @@ use crate::files::manifest::{Encoding, Table};
 use crate::mapping::{Bends, Elek2010, HALVES, Layer, Span, SunCurve, Texel, Views, WINDOW, texel};
 
 /// Stored samples of up to four channels, x fastest, and how each channel is decoded.
-pub(in crate::layout) struct Texels {
+pub(in crate::internals::layout) struct Texels {
     values: Vec<[f32; 4]>,
     encodings: Vec<Encoding>,
 }
 
 impl Texels {
-    pub(in crate::layout) fn new(table: &Table, atlas: &Atlas) -> Result<Self, String> {
+    pub(in crate::internals::layout) fn new(table: &Table, atlas: &Atlas) -> Result<Self, String> {
         let expected: usize = table.shape.iter().product();
         // The shape was held against the file when the sky was opened.
         let mut values = vec![[0.0; 4]; expected];
@@ -34,7 +34,7 @@ impl Texels {
         Ok(Texels { values, encodings })
     }
 
-    pub(in crate::layout) fn decode(&self, stored: [f64; 4]) -> [f64; 4] {
+    pub(in crate::internals::layout) fn decode(&self, stored: [f64; 4]) -> [f64; 4] {
         let mut out = [0.0; 4];
         for (k, e) in self.encodings.iter().enumerate() {
             out[k] = e.decode(stored[k]);
@@ -43,7 +43,7 @@ impl Texels {
     }
 
     /// Σ weight · stored sample over the corners around a place; `strides[axis]` in texels.
-    pub(in crate::layout) fn interpolate<const D: usize>(
+    pub(in crate::internals::layout) fn interpolate<const D: usize>(
         &self,
         place: &[Texel; D],
         strides: &[usize; D],

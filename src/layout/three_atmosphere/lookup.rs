@@ -44,7 +44,7 @@ impl Flat {
 }
 
 impl ThreeAtmosphere {
-    pub(in crate::layout) fn new(source: &Source) -> Result<Self> {
+    pub(in crate::internals::layout) fn new(source: &Source) -> Result<Self> {
         let texels = |name: &str| {
             let (table, atlas) = source.table(name)?;
             Texels::new(table, atlas).map_err(|reason| source.refuse(reason))

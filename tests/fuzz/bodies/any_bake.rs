@@ -7,12 +7,13 @@ use super::{good, presets, refused};
 use clap::{Args as _, Command, FromArgMatches};
 use serde_json::{Value, json};
 use tyndall::Error;
-use tyndall::bake::{Lights, Product, bake_in};
-use tyndall::commands::bake::{Args, settings_of};
-use tyndall::geometry::Point;
-use tyndall::layout::Layout;
-use tyndall::layout::sky::{AerosolPhase, Component};
-use tyndall::preset;
+use tyndall::internals::bake::{Lights, Product, bake_in};
+use tyndall::internals::commands::bake::{Args, settings_of};
+use tyndall::internals::geometry::Point;
+use tyndall::internals::layout::Layout;
+use tyndall::internals::layout::sky::{AerosolPhase, Channels, Component, Sky};
+use tyndall::internals::preset;
+use tyndall::internals::spectrum::{ColourSpace, multiply};
 
 pub fn any_bake(bytes: &[u8]) {
     let mut choices = Choices::new(bytes);
@@ -231,6 +232,23 @@ fn sound(product: &Product, height: f64, layout: &'static dyn Layout) {
     {
         let point = Point { altitude: share * height, mu, mu_s, azimuth_deg: 20.0 };
         let light = sky.radiance(&point, Component::Total, AerosolPhase::Preset);
-        assert!(light.iter().copied().all(good), "{layout:?} {point:?}: {light:?}");
+        assert!(is_light(&light, sky.as_ref(), product), "{layout:?} {point:?}: {light:?}");
+    }
+}
+
+/// Whether an answer is light: no wavelength is negative; no luminance is, where it is a colour, whose single channels
+/// are negative outside the colour space's gamut.
+fn is_light(light: &[f64], sky: &dyn Sky, product: &Product) -> bool {
+    match sky.channels() {
+        Channels::Wavelengths(_) => light.iter().copied().all(good),
+        Channels::Rgb => {
+            let name = &product.manifest.colour.space;
+            let space =
+                ColourSpace::ALL.into_iter().find(|space| space.name() == name).expect("a colour space");
+            light.len() == 3 && light.iter().all(|v| v.is_finite()) && {
+                let luminance = multiply(&space.to_xyz(), [light[0], light[1], light[2]])[1];
+                good(luminance)
+            }
+        }
     }
 }

@@ -7,25 +7,25 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
-use tyndall::bake::recolour::{Source, Wanted, recolour};
-use tyndall::bake::{self, Product, inputs};
-use tyndall::colour::samples;
-use tyndall::commands::{diff, verify};
-use tyndall::files::Atlas;
-use tyndall::files::exr::{from_exr_bytes, to_exr_bytes};
-use tyndall::files::manifest::Manifest;
-use tyndall::geometry::Point;
-use tyndall::layout::Layout;
-use tyndall::layout::compact::CompactLayout;
-use tyndall::layout::compact::Sizes;
-use tyndall::layout::elek2010::Elek2010Layout;
-use tyndall::layout::settings::Settings;
-use tyndall::layout::sky::{self, AerosolPhase, Component, Sky};
-use tyndall::layout::water::Waters;
-use tyndall::layout::water::lookup::{WaterSky, WaterView};
-use tyndall::preset::{self, Planet};
-use tyndall::spectrum::{Beholder, ColourSpace, Rgb};
-use tyndall::transport::solve::Orders;
+use tyndall::internals::bake::recolour::{Source, Wanted, recolour};
+use tyndall::internals::bake::{self, Product, inputs};
+use tyndall::internals::colour::samples;
+use tyndall::internals::commands::{diff, verify};
+use tyndall::internals::files::Atlas;
+use tyndall::internals::files::exr::{from_exr_bytes, to_exr_bytes};
+use tyndall::internals::files::manifest::Manifest;
+use tyndall::internals::geometry::Point;
+use tyndall::internals::layout::Layout;
+use tyndall::internals::layout::compact::CompactLayout;
+use tyndall::internals::layout::compact::Sizes;
+use tyndall::internals::layout::elek2010::Elek2010Layout;
+use tyndall::internals::layout::settings::Settings;
+use tyndall::internals::layout::sky::{self, AerosolPhase, Component, Sky};
+use tyndall::internals::layout::water::Waters;
+use tyndall::internals::layout::water::lookup::{WaterSky, WaterView};
+use tyndall::internals::preset::{self, Planet};
+use tyndall::internals::spectrum::{Beholder, ColourSpace, Rgb};
+use tyndall::internals::transport::solve::Orders;
 
 /// A small bake with a water, in memory and on disk.
 struct Baked {
@@ -130,7 +130,7 @@ pub fn skies(bytes: &[u8]) {
             for change in changes.chunks_exact(7) {
                 let at = usize::from(change[1]) | usize::from(change[2]) << 8;
                 let channels = atlas.channels.len();
-                if let tyndall::files::Samples::Float(v) =
+                if let tyndall::internals::files::Samples::Float(v) =
                     &mut atlas.channels[usize::from(change[0]) % channels].samples
                 {
                     let n = v.len();
@@ -205,15 +205,19 @@ pub fn folder(bytes: &[u8]) {
     fs::write(damaged.join("bake.json"), &text).expect("a manifest");
     match verify::differences(damaged, |_| None) {
         Err(error) => return refused(&error),
-        Ok(found) => found
-            .iter()
-            .for_each(|d| one_line(&format!("{}: {}", tyndall::Line(&d.place), tyndall::Line(&d.what)))),
+        Ok(found) => found.iter().for_each(|d| {
+            one_line(&format!(
+                "{}: {}",
+                tyndall::internals::error::Line(&d.place),
+                tyndall::internals::error::Line(&d.what)
+            ))
+        }),
     }
     let manifest = Manifest::read(damaged).expect("what verify has read");
     verify::lost_or_changed(damaged, &manifest);
     let asked = inputs::asked(&baked.planet, &baked.settings);
     for change in inputs::differences(&inputs::recorded(&manifest), &asked) {
-        one_line(&tyndall::Line(change).to_string());
+        one_line(&tyndall::internals::error::Line(change).to_string());
     }
     if let Err(error) = diff::compare(whole, damaged, 2) {
         refused(&error);

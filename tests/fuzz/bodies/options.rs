@@ -4,9 +4,9 @@
 use super::{file, good, refused};
 use clap::{Args as _, Command, FromArgMatches};
 use std::sync::OnceLock;
-use tyndall::bake::memory::estimate;
-use tyndall::commands::bake::{Args, list, settings_of};
-use tyndall::preset::{self, Planet};
+use tyndall::internals::bake::memory::estimate;
+use tyndall::internals::commands::bake::{Args, list, settings_of};
+use tyndall::internals::preset::{self, Planet};
 
 pub fn bake(bytes: &[u8]) {
     static PLANET: OnceLock<Planet> = OnceLock::new();

@@ -5,15 +5,15 @@ use super::{bakes, file, refused};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::OnceLock;
-use tyndall::bake::{self, Product};
-use tyndall::files::Atlas;
-use tyndall::files::exr::from_exr_bytes;
-use tyndall::files::manifest::Manifest;
-use tyndall::layout::settings::Settings;
-use tyndall::layout::sky;
-use tyndall::layout::three_atmosphere::{LAYOUT, ThreeAtmosphereLayout};
-use tyndall::preset;
-use tyndall::transport::solve::Orders;
+use tyndall::internals::bake::{self, Product};
+use tyndall::internals::files::Atlas;
+use tyndall::internals::files::exr::from_exr_bytes;
+use tyndall::internals::files::manifest::Manifest;
+use tyndall::internals::layout::settings::Settings;
+use tyndall::internals::layout::sky;
+use tyndall::internals::layout::three_atmosphere::{LAYOUT, ThreeAtmosphereLayout};
+use tyndall::internals::preset;
+use tyndall::internals::transport::solve::Orders;
 
 struct Baked {
     tables: BTreeMap<String, Atlas>,

@@ -3,9 +3,9 @@
 use super::edits::{Base, text};
 use super::{good, refused};
 use std::sync::OnceLock;
-use tyndall::bake::memory::estimate;
-use tyndall::layout::settings::Settings;
-use tyndall::preset::{self, Planet, Water};
+use tyndall::internals::bake::memory::estimate;
+use tyndall::internals::layout::settings::Settings;
+use tyndall::internals::preset::{self, Planet, Water};
 
 macro_rules! bases {
     ($($file:literal),*) => {{

@@ -3,11 +3,11 @@
 use super::edits::{Base, text};
 use super::{good, refused};
 use std::sync::OnceLock;
-use tyndall::geometry::Point;
-use tyndall::geometry::view::View;
-use tyndall::medium::Medium;
-use tyndall::preset;
-use tyndall::transport::solve::{Orders, Resolution, Solution};
+use tyndall::internals::geometry::Point;
+use tyndall::internals::geometry::view::View;
+use tyndall::internals::medium::Medium;
+use tyndall::internals::preset;
+use tyndall::internals::transport::solve::{Orders, Resolution, Solution};
 
 pub fn solve(bytes: &[u8]) {
     static BASES: OnceLock<Vec<Base>> = OnceLock::new();

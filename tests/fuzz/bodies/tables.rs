@@ -1,11 +1,11 @@
 //! Tables of numbers as CSV: refused, or numbers that can be answered, drawn and written again.
 
 use super::{file, one_line, refused};
-use tyndall::chart::draw::pictures;
-use tyndall::chart::{Measure, mark, parse_csv, to_csv};
-use tyndall::commands::colour_input;
-use tyndall::files::points::parse_points;
-use tyndall::preset;
+use tyndall::internals::chart::draw::pictures;
+use tyndall::internals::chart::{Measure, mark, parse_csv, to_csv};
+use tyndall::internals::commands::colour_input;
+use tyndall::internals::files::points::parse_points;
+use tyndall::internals::preset;
 
 pub fn points(bytes: &[u8]) {
     match parse_points(file(), bytes) {
