@@ -37,6 +37,8 @@
 //! scattering coefficient by 4π (Eqs. 7, 12) are absent; the factor 1/π of a Lambertian ground, absent from
 //! their Eq. 8, is present. Radiances are per unit solar irradiance on a plane normal to the beam (1/sr).
 
+#![warn(missing_docs, unreachable_pub)]
+
 /// What the two programs and the tests of this package use beside the public face below. It changes without notice.
 #[doc(hidden)]
 #[path = "."]

@@ -8,23 +8,23 @@ use crate::medium::{DensityProfile, Medium, PhaseFunction, Role};
 use std::f64::consts::PI;
 
 /// Index of the gas in every pair of species.
-pub const GAS: usize = 0;
+pub(super) const GAS: usize = 0;
 /// Index of the aerosol in every pair of species.
-pub const AEROSOL: usize = 1;
+pub(super) const AEROSOL: usize = 1;
 
 /// Intervals of the quadrature of a column; even, for Simpson's rule.
 const COLUMN_INTERVALS: usize = 128;
 
 /// A phase function a + b ν², 1/sr: isotropic or Rayleigh, each wavelength with its own King factor.
 #[derive(Clone, Copy)]
-pub struct Quadratic {
+pub(super) struct Quadratic {
     a: Lanes,
     b: Lanes,
 }
 
 impl Quadratic {
     #[inline(always)]
-    pub fn value(&self, nu: f32) -> Lanes {
+    pub(super) fn value(&self, nu: f32) -> Lanes {
         self.a + self.b * (nu * nu)
     }
 }
@@ -40,7 +40,7 @@ struct Part {
 }
 
 /// The medium at up to sixteen wavelengths.
-pub struct Air {
+pub(super) struct Air {
     parts: Vec<Part>,
     /// Mapping of `columns`; only the sky half of its view axis is used.
     map: Elek2010,
@@ -53,7 +53,7 @@ pub struct Air {
 impl Air {
     /// Refuses what the paper's method has no place for: more than sixteen wavelengths, a gas that is not
     /// Rayleigh (or isotropic), an aerosol that is not isotropic.
-    pub fn new(medium: &Medium, extinction_size: [usize; 2]) -> Result<Self> {
+    pub(super) fn new(medium: &Medium, extinction_size: [usize; 2]) -> Result<Self> {
         let wavelengths = medium.wavelengths_nm.len();
         if wavelengths > WIDTH {
             return Err(Error::Argument(format!(
@@ -79,7 +79,7 @@ impl Air {
     }
 
     /// σ ρ of gas and aerosol at an altitude, 1/m.
-    pub fn scattering(&self, altitude: f64) -> [Lanes; 2] {
+    pub(super) fn scattering(&self, altitude: f64) -> [Lanes; 2] {
         let mut sum = [Lanes::ZERO; 2];
         for part in &self.parts {
             sum[part.species] += part.scattering * part.density.at(altitude) as f32;
@@ -89,7 +89,7 @@ impl Air {
 
     /// Optical depth of a path, from the column (m at density 1) of each constituent's density along it.
     #[inline(always)]
-    pub fn depth(&self, column: impl Fn(&DensityProfile) -> f64) -> Lanes {
+    pub(super) fn depth(&self, column: impl Fn(&DensityProfile) -> f64) -> Lanes {
         let mut sum = Lanes::ZERO;
         for part in &self.parts {
             sum += part.extinction * column(&part.density) as f32;
@@ -99,7 +99,7 @@ impl Air {
 
     /// e^−t from a place to the sun (Eq. 6), 0 behind the planet.
     #[inline(always)]
-    pub fn sunlight(&self, altitude: f64, mu_s: f64) -> Lanes {
+    pub(super) fn sunlight(&self, altitude: f64, mu_s: f64) -> Lanes {
         if self.map.hits_ground(altitude, mu_s) {
             return Lanes::ZERO;
         }
@@ -118,7 +118,7 @@ impl Air {
 
 impl Air {
     /// Whether anything of a species scatters.
-    pub fn has(&self, species: usize) -> bool {
+    pub(super) fn has(&self, species: usize) -> bool {
         self.parts.iter().any(|p| p.species == species && p.scattering != Lanes::ZERO)
     }
 }
@@ -177,7 +177,7 @@ fn rising_column(density: &DensityProfile, radius: f64, altitude: f64, mu: f64, 
 }
 
 /// Composite Simpson's rule over `intervals` (even) of a range `width`, values given by their number.
-pub fn simpson(intervals: usize, width: f64, value: impl Fn(usize) -> f64) -> f64 {
+pub(super) fn simpson(intervals: usize, width: f64, value: impl Fn(usize) -> f64) -> f64 {
     let inner: f64 = (1..intervals).map(|k| (2.0 + 2.0 * (k % 2) as f64) * value(k)).sum();
     (value(0) + inner + value(intervals)) * width / (3.0 * intervals as f64)
 }

@@ -10,7 +10,7 @@ use crate::mapping::{Elek2010, Texel, texel};
 const DEPTH_INTERVALS: usize = 8;
 
 /// One sample P of a ray.
-pub struct Sample {
+pub(super) struct Sample {
     /// Distance from the observer, m.
     s: f64,
     radius: f64,
@@ -24,7 +24,7 @@ pub struct Sample {
 }
 
 /// A ray from an observer P_a to the ground or the top, P_b.
-pub struct Ray {
+pub(super) struct Ray {
     radius: f64,
     mu: f64,
     pub hits_ground: bool,
@@ -36,7 +36,7 @@ pub struct Ray {
 impl Ray {
     /// The ray of row (i, j), with `count` equidistant samples from P_a to P_b, both included.
     #[inline(always)]
-    pub fn trace(air: &Air, map: &Elek2010, [i, j]: [usize; 2], count: usize) -> Self {
+    pub(super) fn trace(air: &Air, map: &Elek2010, [i, j]: [usize; 2], count: usize) -> Self {
         let (altitude, top) = (map.altitude(i), map.altitude(map.size()[0] - 1));
         let (mu, hits_ground) = map.mu(altitude, j);
         let radius = map.radius(i);
@@ -70,25 +70,25 @@ impl Ray {
 
     /// P_b, the last sample: on the ground or at the top.
     #[inline(always)]
-    pub fn end(&self) -> &Sample {
+    pub(super) fn end(&self) -> &Sample {
         &self.samples[self.samples.len() - 1]
     }
 
     /// Cosine of the angle between the ray and the sun, the same all along it.
     #[inline(always)]
-    pub fn nu(&self, mu_s: f64, cos_azimuth: f64) -> f64 {
+    pub(super) fn nu(&self, mu_s: f64, cos_azimuth: f64) -> f64 {
         view_sun_cosine(self.mu, mu_s, cos_azimuth)
     }
 
     /// Cosine of the sun's zenith angle at a sample.
     #[inline(always)]
-    pub fn mu_s_at(&self, sample: &Sample, mu_s: f64, nu: f64) -> f64 {
+    pub(super) fn mu_s_at(&self, sample: &Sample, mu_s: f64, nu: f64) -> f64 {
         ((self.radius * mu_s + sample.s * nu) / sample.radius).clamp(-1.0, 1.0)
     }
 
     /// At a sample, cosines of the sun's zenith angle and of the azimuth between it and the ray.
     #[inline(always)]
-    pub fn sun_at(&self, sample: &Sample, mu_s: f64, nu: f64) -> (f64, f64) {
+    pub(super) fn sun_at(&self, sample: &Sample, mu_s: f64, nu: f64) -> (f64, f64) {
         let mu_s_here = self.mu_s_at(sample, mu_s, nu);
         let sines = ((1.0 - sample.mu * sample.mu) * (1.0 - mu_s_here * mu_s_here)).max(0.0).sqrt();
         // Along the vertical, or with the sun in it, every azimuth is the same.
@@ -98,7 +98,7 @@ impl Ray {
 
     /// Texels around a sample, the ray's direction and the sun; none where it is dark.
     #[inline(always)]
-    pub fn place(&self, map: &Elek2010, sample: &Sample, mu_s: f64, nu: f64) -> Option<[Texel; 4]> {
+    pub(super) fn place(&self, map: &Elek2010, sample: &Sample, mu_s: f64, nu: f64) -> Option<[Texel; 4]> {
         let (mu_s_here, cos_azimuth) = self.sun_at(sample, mu_s, nu);
         map.sun_texels(mu_s_here, cos_azimuth).map(|[w, r]| [sample.u, sample.v, w, r])
     }

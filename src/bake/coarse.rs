@@ -5,7 +5,7 @@ use crate::mapping::Elek2010;
 use crate::medium::{Medium, Sheet};
 
 /// A warning for each sheet that is thinner than the distance of the altitudes about it in a layout that is baked.
-pub fn sheets(medium: &Medium, settings: &Settings) -> Vec<String> {
+pub(super) fn sheets(medium: &Medium, settings: &Settings) -> Vec<String> {
     let found = medium.sheets();
     if found.is_empty() {
         return Vec::new();

@@ -14,7 +14,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// The manifest of a bake, without its other files, quality and warnings.
-pub fn manifest(
+pub(crate) fn manifest(
     planet: &Planet,
     settings: &Settings,
     palette: &Palette,
@@ -39,7 +39,7 @@ pub fn manifest(
 }
 
 /// The colour space, its white and all matrices of the air.
-pub fn colour(palette: &Palette) -> Colour {
+pub(crate) fn colour(palette: &Palette) -> Colour {
     let rows = |weights: Vec<[f64; 3]>| {
         (0..3).map(|c| weights.iter().map(|w| w[c]).collect()).collect::<Vec<Vec<f64>>>()
     };
@@ -60,7 +60,7 @@ pub fn colour(palette: &Palette) -> Colour {
 }
 
 /// Adds what the waters' tables need.
-pub fn add_waters(manifest: &mut Manifest, waters: &[Water], tables: &WaterTables) {
+pub(crate) fn add_waters(manifest: &mut Manifest, waters: &[Water], tables: &WaterTables) {
     manifest.colour.matrices.extend(tables.matrices.clone());
     manifest.constants.extend(tables.constants.clone());
     let preset = |w: &Water| Preset { name: w.name.clone(), hash: w.hash(), resolved: w.resolved() };
@@ -93,7 +93,7 @@ fn constants(
 }
 
 /// Light of the star: its illuminance, and its irradiance at the wavelengths of the bake.
-pub fn star(planet: &Planet, palette: &Palette) -> [(String, Vec<f64>); 2] {
+pub(crate) fn star(planet: &Planet, palette: &Palette) -> [(String, Vec<f64>); 2] {
     let irradiance = planet.star.irradiance.at_all(&palette.wavelengths_nm);
     [
         ("star_illuminance_lx".to_string(), vec![palette.star_xyz[1]]),

@@ -19,7 +19,7 @@ const COLOUR_WARNING: f64 = 3.0;
 
 /// A warning where the wavelengths, or the four that tables keep of them, do not span what eyes see, or where the four
 /// give other colours than all.
-pub fn colours(palette: &Palette) -> Option<String> {
+pub(super) fn colours(palette: &Palette) -> Option<String> {
     let four = palette.four_nm();
     if four.len() < 3 {
         return None; // Too few for any colour, of which the bake warns.
@@ -65,7 +65,7 @@ fn spans(nm: &[f64]) -> bool {
 
 /// Warnings where the tables of a layout are so coarse that they miss the light of their own medium by day, and where the
 /// medium of the paper is not the planet's.
-pub fn tables(quality: &Map<String, Value>) -> Vec<String> {
+pub(super) fn tables(quality: &Map<String, Value>) -> Vec<String> {
     let warning = |layout: &dyn Layout| {
         let of = |region: &str| {
             let found = quality.get(layout.report_key())?.get(region)?;
@@ -88,7 +88,7 @@ pub fn tables(quality: &Map<String, Value>) -> Vec<String> {
 }
 
 /// Warnings where the tables for observers under a water miss the water's own light.
-pub fn underwater(quality: &Map<String, Value>) -> Vec<String> {
+pub(super) fn underwater(quality: &Map<String, Value>) -> Vec<String> {
     let waters = quality.get("water").and_then(Value::as_object);
     let warning = |(name, found): (&String, &Value)| {
         let found = &found["underwater_tables_against_solver"];

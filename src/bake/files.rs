@@ -17,13 +17,13 @@ fn hash(bytes: &[u8]) -> String {
 }
 
 /// Encoded tables, and files that are none.
-pub struct Files {
+pub(crate) struct Files {
     pub tables: Vec<TableFile>,
     /// Path, what it is, content.
     pub extra: Vec<(String, String, Vec<u8>)>,
 }
 
-pub struct TableFile {
+pub(crate) struct TableFile {
     atlas: Atlas,
     pub entry: Table,
     bytes: Vec<u8>,
@@ -33,7 +33,7 @@ pub struct TableFile {
 
 impl Files {
     /// Encodes tables, in their order.
-    pub fn encode(baked: &[Baked], storage: &Storage) -> Result<Files> {
+    pub(crate) fn encode(baked: &[Baked], storage: &Storage) -> Result<Files> {
         let encode = |b: &Baked| -> Result<TableFile> {
             let mut atlas = b.atlas();
             if storage.column {
@@ -60,7 +60,7 @@ impl Files {
     }
 
     /// Tables as they would be in files, without those: for readers in memory.
-    pub fn unencoded<'a>(baked: impl Iterator<Item = &'a Baked>) -> Files {
+    pub(crate) fn unencoded<'a>(baked: impl Iterator<Item = &'a Baked>) -> Files {
         let one = |b: &Baked| {
             let atlas = b.atlas();
             TableFile { entry: b.entry(&atlas, String::new()), atlas, bytes: Vec::new(), others: Vec::new() }
@@ -69,13 +69,13 @@ impl Files {
     }
 
     /// Tables of a layout by name, as a reader finds them.
-    pub fn named(&self, layout: &str) -> BTreeMap<String, Atlas> {
+    pub(crate) fn named(&self, layout: &str) -> BTreeMap<String, Atlas> {
         let of_layout = self.tables.iter().filter(|t| t.entry.layout == layout);
         of_layout.map(|t| (t.entry.name.clone(), t.atlas.clone())).collect()
     }
 
     /// Counts of halves of each table that hold less than they seem to, see [`OddHalves`].
-    pub fn odd_halves(&self) -> Value {
+    pub(crate) fn odd_halves(&self) -> Value {
         let mut out = Map::new();
         for t in &self.tables {
             let halves = t.atlas.channels.iter().filter_map(|c| match &c.samples {
@@ -89,12 +89,12 @@ impl Files {
     }
 
     /// Entries of the manifest for the files that are no tables.
-    pub fn others(&self) -> Vec<OtherFile> {
+    pub(crate) fn others(&self) -> Vec<OtherFile> {
         self.extra.iter().map(entry).collect()
     }
 
     /// Path and content of every file, tables first.
-    pub fn into_bytes(self) -> Vec<(String, Vec<u8>)> {
+    pub(crate) fn into_bytes(self) -> Vec<(String, Vec<u8>)> {
         let tables =
             self.tables.into_iter().flat_map(|f| [(f.entry.file, f.bytes)].into_iter().chain(f.others));
         tables.chain(self.extra.into_iter().map(|(file, _, bytes)| (file, bytes))).collect()
@@ -102,10 +102,10 @@ impl Files {
 }
 
 /// Path inside a bake, and content.
-pub type Content = (String, Vec<u8>);
+pub(crate) type Content = (String, Vec<u8>);
 
 /// What the manifest says of a file that is no table: of its path, what it is, and its content.
-pub fn entry((file, about, bytes): &(String, String, Vec<u8>)) -> OtherFile {
+pub(crate) fn entry((file, about, bytes): &(String, String, Vec<u8>)) -> OtherFile {
     OtherFile { file: file.clone(), blake3: hash(bytes), about: about.clone() }
 }
 

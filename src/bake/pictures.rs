@@ -21,10 +21,10 @@ const WATER_DEPTHS: [f64; 4] = [2.0, 4.0, 10.0, 100.0];
 const WATER_SUNS: [f64; 2] = [60.0, 15.0];
 
 /// The picture's file in a bake.
-pub const FILE: &str = "preview.png";
+pub(crate) const FILE: &str = "preview.png";
 
 /// The picture, and the number of pixels that no display can show. Of tables for a window it shows what they hold.
-pub fn preview(
+pub(crate) fn preview(
     sky: &dyn Sky,
     planet: &Planet,
     window: &Window,

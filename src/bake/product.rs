@@ -10,7 +10,7 @@ use std::path::Path;
 use std::time::Duration;
 
 /// What messages call a bake that is in no folder yet.
-pub const IN_MEMORY: &str = "the bake in memory";
+pub(super) const IN_MEMORY: &str = "the bake in memory";
 
 /// A finished bake in memory: every file of it, `bake.json` included, and the manifest as a value.
 pub struct Product {

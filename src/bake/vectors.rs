@@ -13,7 +13,7 @@ const VIEWS: usize = 12;
 const SEQUENCE: u32 = 2;
 
 /// The views: of all regions, or of the window that the tables are for.
-pub fn points(medium: &Medium, window: &Window) -> Vec<Point> {
+pub(super) fn points(medium: &Medium, window: &Window) -> Vec<Point> {
     let [ground, top] = [medium.ground_radius, medium.top_radius];
     if *window != Window::WHOLE {
         let scope = Scope::of_window(window, ground, top);
@@ -24,7 +24,7 @@ pub fn points(medium: &Medium, window: &Window) -> Vec<Point> {
 
 /// Path, description and content of a layout's file: a CSV with the columns of points and, for each channel (a
 /// wavelength, or red, green and blue), the light that the air scatters into the view and that with the ground's, 1/sr.
-pub fn file(layout: &str, sky: &dyn Sky, points: &[Point]) -> (String, String, Vec<u8>) {
+pub(super) fn file(layout: &str, sky: &dyn Sky, points: &[Point]) -> (String, String, Vec<u8>) {
     let channels: Vec<String> = match sky.channels() {
         Channels::Wavelengths(nm) => nm.iter().map(|w| format!("{w}nm")).collect(),
         Channels::Rgb => ["red", "green", "blue"].map(String::from).to_vec(),

@@ -22,7 +22,7 @@ const CHECKED: usize = 7;
 /// Relative change that the truth may still make.
 const TOLERANCE: f64 = 2e-5;
 /// Radiance over irradiance, 1/sr, below which a view is dark and errors mean nothing: a hundredth of starlight by day.
-pub const DARK: f64 = 1e-11;
+pub(super) const DARK: f64 = 1e-11;
 /// Standard error at which Monte Carlo may stop.
 const STDERR: f64 = 3e-3;
 /// Apart from the views of bakes' own reports.

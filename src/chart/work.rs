@@ -9,14 +9,14 @@ use serde::{Serialize, de::DeserializeOwned};
 use std::path::{Path, PathBuf};
 
 /// A folder of parts. A part is found again only by the program that made it, for the same planet and effort.
-pub struct Work {
+pub(super) struct Work {
     folder: PathBuf,
     made_of: String,
 }
 
 impl Work {
     /// Errors: a folder that cannot be made.
-    pub fn begin(folder: &Path, planet: &Planet, effort: Effort) -> Result<Work> {
+    pub(super) fn begin(folder: &Path, planet: &Planet, effort: Effort) -> Result<Work> {
         std::fs::create_dir_all(folder).map_err(|e| Error::machine(folder, e))?;
         let program = std::env::current_exe().and_then(std::fs::read);
         let program = program.map_err(|e| Error::machine("this program", e))?;
@@ -25,7 +25,7 @@ impl Work {
     }
 
     /// The part of that name: from the folder where it is there whole, made and kept otherwise.
-    pub fn part<T: Serialize + DeserializeOwned>(
+    pub(super) fn part<T: Serialize + DeserializeOwned>(
         &self,
         name: &str,
         make: impl FnOnce() -> Result<T>,

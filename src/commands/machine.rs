@@ -8,7 +8,7 @@ use std::error::Error as _;
 
 /// Which instruction set the hot loops use; the bytes are the same for all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum IsaChoice {
+pub(super) enum IsaChoice {
     Auto,
     Baseline,
     Avx2,
@@ -16,7 +16,7 @@ pub enum IsaChoice {
 }
 
 impl IsaChoice {
-    pub fn apply(self) -> Result<()> {
+    pub(super) fn apply(self) -> Result<()> {
         let isa = match self {
             IsaChoice::Auto => Isa::detect(),
             IsaChoice::Baseline => Isa::Baseline,
@@ -34,7 +34,7 @@ impl IsaChoice {
 const MOST_THREADS: usize = 1024;
 
 /// Runs with a number of threads, all of the machine's where none is given.
-pub fn with_threads<R: Send>(threads: Option<usize>, work: impl FnOnce() -> R + Send) -> Result<R> {
+pub(super) fn with_threads<R: Send>(threads: Option<usize>, work: impl FnOnce() -> R + Send) -> Result<R> {
     match check_threads(threads)? {
         None => share_threads(None).map(|()| work()),
         Some(n) => {
@@ -72,7 +72,7 @@ fn check_threads(threads: Option<usize>) -> Result<Option<usize>> {
 }
 
 /// `auto`, a number of even samples, or a list of nm.
-pub fn wavelengths(text: &str) -> std::result::Result<Vec<f64>, String> {
+pub(super) fn wavelengths(text: &str) -> std::result::Result<Vec<f64>, String> {
     if text == "auto" {
         return Ok(crate::spectrum::grid(crate::layout::settings::WAVELENGTHS));
     }
@@ -100,7 +100,7 @@ pub fn wavelengths(text: &str) -> std::result::Result<Vec<f64>, String> {
 const MOST_WAVELENGTHS: usize = 500;
 
 /// Whether wavelengths (nm), in any order, are ones that a run may have.
-pub fn in_range(list: &[f64]) -> std::result::Result<(), String> {
+pub(super) fn in_range(list: &[f64]) -> std::result::Result<(), String> {
     if list.is_empty() {
         return Err("at least one wavelength is needed".into());
     }
@@ -114,10 +114,10 @@ pub fn in_range(list: &[f64]) -> std::result::Result<(), String> {
 }
 
 /// Orders of scattering that can be asked for.
-pub const MOST_ORDERS: usize = 10_000;
+pub(super) const MOST_ORDERS: usize = 10_000;
 
 /// `auto` or a number of orders; `tolerance` is what `auto` converges to.
-pub fn orders(text: &str, tolerance: f64) -> std::result::Result<Orders, String> {
+pub(super) fn orders(text: &str, tolerance: f64) -> std::result::Result<Orders, String> {
     if text == "auto" {
         return Ok(Orders::Converged { tolerance });
     }
@@ -128,7 +128,7 @@ pub fn orders(text: &str, tolerance: f64) -> std::result::Result<Orders, String>
 }
 
 /// `auto` or a number of orders of scattering in water.
-pub fn water_orders(text: &str) -> std::result::Result<WaterOrders, String> {
+pub(super) fn water_orders(text: &str) -> std::result::Result<WaterOrders, String> {
     match text.parse::<usize>() {
         _ if text == "auto" => Ok(WaterOrders::All),
         Ok(n) if (1..=MOST_WATER_ORDERS).contains(&n) => Ok(WaterOrders::First(n)),
@@ -137,4 +137,4 @@ pub fn water_orders(text: &str) -> std::result::Result<WaterOrders, String> {
 }
 
 /// Orders in water that can be asked for: a scattering albedo of 0.99 leaves 1e-4 of the light after as many.
-pub const MOST_WATER_ORDERS: usize = 1000;
+pub(super) const MOST_WATER_ORDERS: usize = 1000;

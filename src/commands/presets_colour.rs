@@ -69,7 +69,7 @@ impl Colour {
 }
 
 /// Colours under a title, for people and for machines.
-pub struct Colours {
+pub(super) struct Colours {
     pub key: &'static str,
     pub json: Value,
     pub text: String,
@@ -80,7 +80,7 @@ fn head(title: &str, quantity: &str) -> String {
 }
 
 /// Colour of the zenith from the ground with the sun at some heights: light of all orders, without the sun's disc.
-pub fn zenith(planet: &Planet) -> Colours {
+pub(super) fn zenith(planet: &Planet) -> Colours {
     let nm = grid(WAVELENGTHS);
     let medium = planet.medium(&nm);
     let solution = Solution::new(&medium, &QUICK, Orders::Converged { tolerance: TOLERANCE });
@@ -120,7 +120,7 @@ pub fn zenith(planet: &Planet) -> Colours {
 
 /// Colour of water without a bottom, straight from above, in the light of the shipped sun 30° from the zenith and
 /// without a sky: Y is that of a white Lambertian surface in the same light times what is given.
-pub fn deep_water(water: &Water) -> Result<Colours> {
+pub(super) fn deep_water(water: &Water) -> Result<Colours> {
     const MU_S: f64 = 0.866_025_403_784_438_6;
     /// Deep enough for the clearest water, m.
     const DEEP: f64 = 1e5;

@@ -12,7 +12,7 @@ fn depths(c: &Constituent, height: f64) -> (Vec<f64>, Vec<f64>) {
 }
 
 /// The resolved preset, its hash and its physics at some wavelengths.
-pub fn as_json(planet: &Planet, wavelengths: &[f64]) -> String {
+pub(super) fn as_json(planet: &Planet, wavelengths: &[f64]) -> String {
     let medium = planet.medium(wavelengths);
     let height = planet.height();
     let constituent = |c: &Constituent| -> Value {
@@ -41,7 +41,7 @@ pub fn as_json(planet: &Planet, wavelengths: &[f64]) -> String {
 }
 
 /// The same for reading.
-pub fn as_text(planet: &Planet, wavelengths: &[f64]) -> String {
+pub(super) fn as_text(planet: &Planet, wavelengths: &[f64]) -> String {
     let medium = planet.medium(wavelengths);
     let mut out = format!("{}: {}\n", planet.name, planet.description);
     out.push_str(&format!(

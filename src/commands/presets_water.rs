@@ -38,7 +38,7 @@ fn backwards(phase: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// The resolved preset, its hash and its physics at some wavelengths.
-pub fn as_json(water: &Water, wavelengths: &[f64]) -> String {
+pub(super) fn as_json(water: &Water, wavelengths: &[f64]) -> String {
     let p = physics(water, wavelengths);
     let constituent = |s: &crate::preset::WaterSubstance| -> Value {
         json!({
@@ -66,7 +66,7 @@ pub fn as_json(water: &Water, wavelengths: &[f64]) -> String {
 }
 
 /// The same for reading.
-pub fn as_text(water: &Water, wavelengths: &[f64]) -> String {
+pub(super) fn as_text(water: &Water, wavelengths: &[f64]) -> String {
     let p = physics(water, wavelengths);
     let row = |name: &str, cells: &[f64]| {
         let cells: String = cells

@@ -16,7 +16,7 @@ use crate::reference::water::{Air, Look, WaterTracer};
 const PATHS: u64 = 1 << 18;
 
 /// Answers all points: radiance that leaves the water where the view meets it, not weakened by the air between.
-pub fn run(args: &Args, name: &str, air: &Medium, points: &[Point]) -> Result<()> {
+pub(super) fn run(args: &Args, name: &str, air: &Medium, points: &[Point]) -> Result<()> {
     let water = preset::load_water(name, &[])?;
     let depth = args.depth.unwrap_or(0.0);
     if !(depth > 0.0 && depth <= water.largest_depth) {

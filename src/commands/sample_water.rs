@@ -16,7 +16,13 @@ use rayon::prelude::*;
 
 /// Answers all points as CSV on standard output: radiance that leaves the water where the view meets it (not
 /// weakened by the air between), or that an observer in the water sees.
-pub fn run(args: &Args, name: &str, manifest: &Manifest, planet: &Planet, points: &[Point]) -> Result<()> {
+pub(super) fn run(
+    args: &Args,
+    name: &str,
+    manifest: &Manifest,
+    planet: &Planet,
+    points: &[Point],
+) -> Result<()> {
     let sky = WaterSky::open(&args.bake, manifest, name)?;
     let depth = args.depth.unwrap_or(0.0);
     if !(0.0..=sky.largest_depth).contains(&depth) {

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::machine::output::written;
-pub use crate::machine::output::{print, say, stream, watched};
+pub(super) use crate::machine::output::{print, say, stream, watched};
 use std::io::{self, Write};
 
 /// Tells of arguments that are none of a command, and ends the program; of `--help` and `--version`, which are answers,
@@ -18,7 +18,7 @@ pub fn refused(error: &clap::Error) -> Result<()> {
 }
 
 /// A number to nine significant digits: plain where that is short, else with an exponent.
-pub fn number(v: f64) -> String {
+pub(super) fn number(v: f64) -> String {
     let size = v.abs();
     if v == 0.0 || !v.is_finite() {
         return format!("{v}");

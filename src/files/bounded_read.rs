@@ -154,17 +154,17 @@ pub(crate) mod system {
     use rustix::fs::{OFlags, fcntl_getfl, fcntl_setfl};
     use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
 
-    pub fn is_pipe(found: &Metadata) -> bool {
+    pub(crate) fn is_pipe(found: &Metadata) -> bool {
         found.file_type().is_fifo()
     }
 
     /// Opens without waiting for the other end of a pipe.
-    pub fn at_once(options: &mut OpenOptions) -> &mut OpenOptions {
+    pub(crate) fn at_once(options: &mut OpenOptions) -> &mut OpenOptions {
         options.custom_flags(OFlags::NONBLOCK.bits() as i32)
     }
 
     /// From here on reads wait for bytes.
-    pub fn wait_again(file: &File) -> io::Result<()> {
+    pub(crate) fn wait_again(file: &File) -> io::Result<()> {
         Ok(fcntl_setfl(file, fcntl_getfl(file)? - OFlags::NONBLOCK)?)
     }
 }

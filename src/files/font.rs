@@ -1,12 +1,12 @@
 //! A tiny font for the labels of pictures: capitals, digits and some signs, 5 × 7 pixels.
 
 /// Pixels from one character to the next, and from one line to the next.
-pub const ADVANCE: usize = 6;
-pub const LINE: usize = 10;
+pub(super) const ADVANCE: usize = 6;
+pub(super) const LINE: usize = 10;
 
 /// The rows of a character from the top, the leftmost pixel in bit 4; small letters look like capitals, a
 /// space and what the font lacks are blank.
-pub fn glyph(character: char) -> [u8; 7] {
+pub(super) fn glyph(character: char) -> [u8; 7] {
     let wanted = character.to_ascii_uppercase();
     GLYPHS.iter().find(|(known, _)| *known == wanted).map_or([0; 7], |&(_, rows)| rows)
 }

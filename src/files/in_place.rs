@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 ///
 /// # Errors
 /// Where a file cannot be written; the old bake is back then, or, where not even that can be written, whole in `aside`.
-pub fn put(new: &Path, target: &Path, aside: &Path) -> io::Result<()> {
+pub(super) fn put(new: &Path, target: &Path, aside: &Path) -> io::Result<()> {
     // One at a time, where the system can lock folders.
     let _turn = fs::File::open(target).ok().filter(|folder| folder.lock().is_ok());
     fs::create_dir(aside)?;
@@ -50,7 +50,7 @@ fn put_files(new: &Path, target: &Path, old: &BTreeSet<PathBuf>) -> io::Result<(
 ///
 /// # Errors
 /// Where a file cannot be written; the copy is whole then.
-pub fn back(new: &Path, target: &Path, aside: &Path) -> io::Result<()> {
+pub(super) fn back(new: &Path, target: &Path, aside: &Path) -> io::Result<()> {
     let left = walk(new)?;
     listed(new).iter().filter(|file| !left.contains(*file)).for_each(|file| remove(target, file));
     ordered(walk(aside)?.into_iter().collect()).try_for_each(|file| {

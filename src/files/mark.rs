@@ -7,7 +7,7 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 
 /// The file in a marked folder.
-pub const MARK: &str = ".tyndall";
+pub(super) const MARK: &str = ".tyndall";
 
 /// What stands in it, and nothing else.
 const TEXT: &str =
@@ -15,7 +15,7 @@ const TEXT: &str =
 
 /// Marks a new folder as this process's, until the file that is returned is closed: the kernel does that when the
 /// process dies, however it dies. Where the system has no locks, nobody ever takes the owner for dead.
-pub fn put(folder: &Path) -> io::Result<File> {
+pub(super) fn put(folder: &Path) -> io::Result<File> {
     let mut file = File::options().read(true).write(true).create_new(true).open(folder.join(MARK))?;
     // Before the text: who finds the whole text finds the lock, too.
     let _ = file.lock();
@@ -24,7 +24,7 @@ pub fn put(folder: &Path) -> io::Result<File> {
 }
 
 /// The lock of a marked folder whose process is dead; none of any other folder, or of what is no folder.
-pub fn take_dead(folder: &Path) -> Option<File> {
+pub(super) fn take_dead(folder: &Path) -> Option<File> {
     let mark = folder.join(MARK);
     let kind = |path: &Path| fs::symlink_metadata(path).ok().map(|m| m.file_type());
     if !kind(folder)?.is_dir() || !kind(&mark)?.is_file() {

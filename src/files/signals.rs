@@ -26,7 +26,7 @@ pub fn handle_interrupts() -> Result<()> {
 #[cfg(unix)]
 mod disposition {
     /// Those of the signals that end this process which it ignores now.
-    pub fn ignored() -> Vec<i32> {
+    pub(super) fn ignored() -> Vec<i32> {
         let is_ignored = |signal: &i32| {
             let mut now = std::mem::MaybeUninit::<libc::sigaction>::zeroed();
             // SAFETY: nothing is changed, and what is asked for is written where there is room for it.
@@ -37,7 +37,7 @@ mod disposition {
         [libc::SIGHUP, libc::SIGINT, libc::SIGTERM].into_iter().filter(is_ignored).collect()
     }
 
-    pub fn ignore(signal: i32) {
+    pub(super) fn ignore(signal: i32) {
         // SAFETY: no handler is named.
         unsafe { libc::signal(signal, libc::SIG_IGN) };
     }

@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// How the names of folders begin in which bakes of `target` are written: `.earth.tmp-` for `earth`.
-pub fn prefix(target: &Path) -> OsString {
+pub(super) fn prefix(target: &Path) -> OsString {
     let mut name = OsString::from(".");
     name.push(target.file_name().unwrap_or(OsStr::new("bake")));
     name.push(".tmp-");
@@ -29,7 +29,7 @@ fn beside(target: &Path) -> Vec<PathBuf> {
 }
 
 /// Removes the folders of dead bakes of `target`, as far as that is possible.
-pub fn sweep(target: &Path) {
+pub(super) fn sweep(target: &Path) {
     for folder in beside(target) {
         let Some(_lock) = mark::take_dead(&folder) else { continue };
         if nothing_lost(&folder, target) {
@@ -40,7 +40,7 @@ pub fn sweep(target: &Path) {
 
 /// Whether some bake of `target` has moved the old one aside and not yet put its own in the place: for a moment there is
 /// no bake, where the system cannot exchange two folders.
-pub fn in_between(target: &Path) -> bool {
+pub(super) fn in_between(target: &Path) -> bool {
     beside(target).iter().any(|folder| folder.join(mark::MARK).is_file() && folder.join(OLD).is_dir())
 }
 

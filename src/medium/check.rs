@@ -3,11 +3,11 @@
 use super::{Constituent, DensityProfile, Medium, PhaseFunction};
 
 /// Largest radius of a top, m: fourteen times the sun's.
-pub const MOST_RADIUS: f64 = 1e10;
+pub(super) const MOST_RADIUS: f64 = 1e10;
 /// Largest height of the air in radii of the ground.
-pub const MOST_HEIGHT: f64 = 10.0;
+pub(super) const MOST_HEIGHT: f64 = 10.0;
 /// Largest vertical optical depth; a thousand times that of the thickest clouds.
-pub const MOST_DEPTH: f64 = 1e5;
+pub(super) const MOST_DEPTH: f64 = 1e5;
 
 /// Nodes of a density profile at most, far more than shipped planets have: the solver has a shell for each, and with five
 /// thousand a bake of small tables took minutes.

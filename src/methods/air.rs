@@ -9,13 +9,13 @@ use crate::spectrum::ColourSpace;
 use std::f64::consts::FRAC_1_PI;
 
 /// Red, green and blue, or a quantity at their wavelengths.
-pub type Rgb = [f64; 3];
+pub(super) type Rgb = [f64; 3];
 
 /// Wavelengths of red, green and blue, nm (Nishita et al. 1993 and the 2022 article after it).
-pub const WAVELENGTHS_NM: Rgb = [680.0, 550.0, 440.0];
+pub(super) const WAVELENGTHS_NM: Rgb = [680.0, 550.0, 440.0];
 
 /// One constituent: where it is, what it removes and scatters where its density is 1, 1/m.
-pub struct Part {
+pub(super) struct Part {
     pub density: DensityProfile,
     pub scattering: Rgb,
     pub extinction: Rgb,
@@ -23,13 +23,13 @@ pub struct Part {
 }
 
 impl Part {
-    pub fn phase(&self, nu: f64) -> Rgb {
+    pub(super) fn phase(&self, nu: f64) -> Rgb {
         std::array::from_fn(|c| self.phase[c].value(nu))
     }
 }
 
 /// A planet at three wavelengths.
-pub struct Air {
+pub(super) struct Air {
     pub ground_radius: f64,
     pub top_radius: f64,
     pub parts: Vec<Part>,
@@ -39,7 +39,7 @@ pub struct Air {
 }
 
 impl Air {
-    pub fn new(planet: &Planet) -> Self {
+    pub(super) fn new(planet: &Planet) -> Self {
         let medium = planet.medium(&WAVELENGTHS_NM);
         let parts = medium.constituents.iter().map(|c| Part {
             density: c.density.clone(),
@@ -56,44 +56,44 @@ impl Air {
         }
     }
 
-    pub fn height(&self) -> f64 {
+    pub(super) fn height(&self) -> f64 {
         self.top_radius - self.ground_radius
     }
 
     /// Linear RGB over the star's illuminance of radiance over its irradiance.
-    pub fn colour(&self, radiance: Rgb) -> Rgb {
+    pub(super) fn colour(&self, radiance: Rgb) -> Rgb {
         std::array::from_fn(|c| radiance[c] * self.weights[c])
     }
 
     /// The view where it enters the shell; none where it misses.
-    pub fn enter(&self, point: &Point) -> Option<View> {
+    pub(super) fn enter(&self, point: &Point) -> Option<View> {
         View::enter(point, self.ground_radius, self.top_radius)
     }
 
     /// Altitude of a view's start, m; exact where the observer is inside.
-    pub fn altitude(&self, point: &Point) -> f64 {
+    pub(super) fn altitude(&self, point: &Point) -> f64 {
         point.altitude.min(self.height())
     }
 
     /// Length of a ray to the ground or to the top, m.
-    pub fn length(&self, r: f64, mu: f64, hits_ground: bool) -> f64 {
+    pub(super) fn length(&self, r: f64, mu: f64, hits_ground: bool) -> f64 {
         let end = if hits_ground { self.ground_radius } else { self.top_radius };
         let root = (r * r * (mu * mu - 1.0) + end * end).max(0.0).sqrt();
         (if hits_ground { -r * mu - root } else { root - r * mu }).max(0.0)
     }
 
     /// True where a ray meets the planet.
-    pub fn is_blocked(&self, r: f64, mu: f64) -> bool {
+    pub(super) fn is_blocked(&self, r: f64, mu: f64) -> bool {
         mu < 0.0 && r * r * (1.0 - mu * mu) < self.ground_radius * self.ground_radius
     }
 
     /// Densities of all parts at an altitude.
-    pub fn densities(&self, altitude: f64) -> impl Iterator<Item = f64> {
+    pub(super) fn densities(&self, altitude: f64) -> impl Iterator<Item = f64> {
         self.parts.iter().map(move |p| p.density.at(altitude))
     }
 
     /// Optical depth of columns, one a part, m.
-    pub fn depth(&self, columns: &[f64]) -> Rgb {
+    pub(super) fn depth(&self, columns: &[f64]) -> Rgb {
         let mut depth = [0.0; 3];
         for (part, column) in self.parts.iter().zip(columns) {
             (0..3).for_each(|c| depth[c] += part.extinction[c] * column);
@@ -102,14 +102,14 @@ impl Air {
     }
 
     /// Radiance of the ground under direct sunlight of transmittance `sun`: Lambert, no other light.
-    pub fn ground(&self, sun: Rgb, mu_s: f64) -> Rgb {
+    pub(super) fn ground(&self, sun: Rgb, mu_s: f64) -> Rgb {
         std::array::from_fn(|c| self.albedo[c] * FRAC_1_PI * sun[c] * mu_s.max(0.0))
     }
 }
 
 /// A place on a ray.
 #[derive(Clone, Copy, Debug)]
-pub struct OnRay {
+pub(super) struct OnRay {
     pub altitude: f64,
     pub r: f64,
     pub mu: f64,
@@ -117,7 +117,7 @@ pub struct OnRay {
 }
 
 /// The place at a distance `s` along a view that starts at `altitude`.
-pub fn on_ray(view: &View, altitude: f64, s: f64) -> OnRay {
+pub(super) fn on_ray(view: &View, altitude: f64, s: f64) -> OnRay {
     let r = radius_along(view.r, view.mu, s);
     OnRay {
         altitude: altitude_along(view.r, altitude, view.mu, s).max(0.0),
@@ -128,7 +128,7 @@ pub fn on_ray(view: &View, altitude: f64, s: f64) -> OnRay {
 }
 
 /// e^−depth.
-pub fn through(depth: Rgb) -> Rgb {
+pub(super) fn through(depth: Rgb) -> Rgb {
     depth.map(|d| libm::exp(-d))
 }
 

@@ -10,13 +10,13 @@ const SIZE: [usize; 2] = [96, 192];
 /// Intervals of the quadrature of a column; even, for Simpson's rule.
 const INTERVALS: usize = 128;
 
-pub struct SunDepth {
+pub(super) struct SunDepth {
     map: Elek2010,
     depths: Array<Rgb, 2>,
 }
 
 impl SunDepth {
-    pub fn new(air: &Air) -> Self {
+    pub(super) fn new(air: &Air) -> Self {
         let map = Elek2010::new(air.ground_radius, air.top_radius, [SIZE[0], 2 * SIZE[1], 2, 2]);
         let map = map.expect("a planet that was read has a shell");
         let depths = Array::fill(SIZE, |[i, j]| {
@@ -28,7 +28,7 @@ impl SunDepth {
     }
 
     /// Transmittance towards a sun; 0 behind the planet.
-    pub fn sunlight(&self, place: &OnRay) -> Rgb {
+    pub(super) fn sunlight(&self, place: &OnRay) -> Rgb {
         if self.map.hits_ground(place.altitude, place.mu_s) {
             return [0.0; 3];
         }
@@ -36,7 +36,7 @@ impl SunDepth {
     }
 
     /// Optical depth to the top in a direction that leaves.
-    pub fn depth(&self, altitude: f64, mu: f64) -> Rgb {
+    pub(super) fn depth(&self, altitude: f64, mu: f64) -> Rgb {
         let at = [
             texel(self.map.altitude_coordinate(altitude), SIZE[0]),
             texel(self.map.view_coordinate(altitude, mu, false), SIZE[1]),
@@ -44,7 +44,7 @@ impl SunDepth {
         self.depths.interpolate(&at)
     }
 
-    pub fn texels(&self) -> usize {
+    pub(super) fn texels(&self) -> usize {
         self.depths.values().len()
     }
 }

@@ -124,7 +124,7 @@ impl March {
 }
 
 /// Columns to the top in a direction, one a part, m.
-pub fn march_columns(air: &Air, place: &OnRay, steps: usize, columns: &mut [f64]) {
+pub(super) fn march_columns(air: &Air, place: &OnRay, steps: usize, columns: &mut [f64]) {
     let sunward = View { r: place.r, mu: place.mu_s, mu_s: 0.0, nu: 0.0, hits_ground: false };
     let step = air.length(place.r, place.mu_s, false) / steps as f64;
     for k in 0..steps {

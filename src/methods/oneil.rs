@@ -14,7 +14,7 @@ const BLOCKED: f32 = 1e20;
 /// Steps of the march of each column.
 const STEPS: usize = 500;
 
-pub struct DepthTable {
+pub(super) struct DepthTable {
     height: f64,
     parts: usize,
     /// `[altitude][zenith angle][part]`: density and column, m.
@@ -23,7 +23,7 @@ pub struct DepthTable {
 }
 
 impl DepthTable {
-    pub fn new(air: &Air, size: [usize; 2]) -> Self {
+    pub(super) fn new(air: &Air, size: [usize; 2]) -> Self {
         let parts = air.parts.len();
         let [altitudes, angles] = size;
         let texel = |n: usize| {
@@ -44,7 +44,7 @@ impl DepthTable {
     }
 
     /// Adds to the lists densities, and columns to the top in a direction, one a part.
-    pub fn read(&self, altitude: f64, mu: f64, densities: &mut Vec<f64>, columns: &mut Vec<f64>) {
+    pub(super) fn read(&self, altitude: f64, mu: f64, densities: &mut Vec<f64>, columns: &mut Vec<f64>) {
         let (i, x) = texel(altitude / self.height, self.size[0]);
         let (j, y) = texel(0.5 * (1.0 + mu), self.size[1]);
         let row = self.size[1] * self.parts;
@@ -61,12 +61,12 @@ impl DepthTable {
     }
 
     /// Density and column of each part, as 32-bit floats.
-    pub fn bytes(&self) -> usize {
+    pub(super) fn bytes(&self) -> usize {
         self.texels.len() * 2 * 4
     }
 
     /// Textures of four channels that hold them.
-    pub fn fetches(&self) -> usize {
+    pub(super) fn fetches(&self) -> usize {
         (2 * self.parts).div_ceil(4)
     }
 }

@@ -8,7 +8,7 @@ use crate::mapping::Array;
 const BRIGHTEST: f64 = 32768.0;
 
 /// Rounds every colour to halves of one power of two that brings the brightest close below the largest half.
-pub fn to_halves<const D: usize>(texels: &mut Array<Rgb, D>) {
+pub(super) fn to_halves<const D: usize>(texels: &mut Array<Rgb, D>) {
     let brightest = texels.values().iter().flatten().fold(0.0, |a: f64, &v| if v > a { v } else { a });
     if brightest <= 0.0 {
         return;
@@ -20,4 +20,4 @@ pub fn to_halves<const D: usize>(texels: &mut Array<Rgb, D>) {
 }
 
 /// Bytes of a texel of four halves.
-pub const TEXEL: usize = 8;
+pub(super) const TEXEL: usize = 8;

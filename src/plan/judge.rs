@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 
 /// Luminance over the star's illuminance, 1/sr, below which views are left out: darker than a moonless night is by
 /// itself.
-pub const NIGHT: f64 = 1e-9;
+pub(super) const NIGHT: f64 = 1e-9;
 /// Azimuths of a view where only their mean matters.
 const AZIMUTHS: usize = 4;
 
@@ -30,7 +30,7 @@ enum Look {
 }
 
 /// Views and the truth about them.
-pub struct Judge {
+pub(super) struct Judge {
     views: Vec<Look>,
     /// XYZ over the star's illuminance, 1/sr.
     truth: Vec<[f64; 3]>,
@@ -78,7 +78,7 @@ impl Errors {
 }
 
 /// The views that a scene means.
-pub fn scope(scene: &Scene) -> Scope {
+pub(super) fn scope(scene: &Scene) -> Scope {
     let [low, high] = scene.suns;
     Scope {
         altitudes: scene.altitudes,
@@ -90,7 +90,7 @@ pub fn scope(scene: &Scene) -> Scope {
 }
 
 /// What truths come from: a medium, the light in it, and colours of its wavelengths.
-pub struct Truth<'a> {
+pub(super) struct Truth<'a> {
     pub medium: &'a Medium,
     pub solution: &'a Solution,
     pub reconstruction: &'a Reconstruction,
@@ -123,7 +123,7 @@ impl Truth<'_> {
 
 impl Judge {
     /// Views of a scene under a seed, with their truth.
-    pub fn new(scene: &Scene, truth: &Truth, count: usize, seed: u32) -> Judge {
+    pub(super) fn new(scene: &Scene, truth: &Truth, count: usize, seed: u32) -> Judge {
         let [ground, top] = [truth.medium.ground_radius, truth.medium.top_radius];
         let around = |(k, p): (usize, Point)| -> Look {
             if k % SUNWARD == SUNWARD - 1 && p.altitude < top - ground {
@@ -145,12 +145,12 @@ impl Judge {
         Judge { views, truth, space: ColourSpace::Srgb, tolerance: scene.tolerance }
     }
 
-    pub fn is_empty(&self) -> bool {
+    pub(super) fn is_empty(&self) -> bool {
         self.views.is_empty()
     }
 
     /// Errors of a sky.
-    pub fn errors(&self, sky: &dyn Sky) -> Errors {
+    pub(super) fn errors(&self, sky: &dyn Sky) -> Errors {
         let (to_xyz, from_xyz) = (self.space.to_xyz(), self.space.from_xyz());
         let one = |(look, truth): (&Look, &[f64; 3])| {
             let mut rgb = [0.0; 3];

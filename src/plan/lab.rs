@@ -32,7 +32,7 @@ struct Light {
 }
 
 /// Where models are measured.
-pub struct Lab<'a> {
+pub(super) struct Lab<'a> {
     planet: &'a Planet,
     base: Settings,
     lights: Vec<Light>,
@@ -42,7 +42,7 @@ pub struct Lab<'a> {
 }
 
 impl<'a> Lab<'a> {
-    pub fn new(planet: &'a Planet) -> Self {
+    pub(super) fn new(planet: &'a Planet) -> Self {
         Lab { planet, base: Settings::default(), lights: Vec::new(), tables: Vec::new(), measured: 0 }
     }
 
@@ -60,24 +60,24 @@ impl<'a> Lab<'a> {
     }
 
     /// Times that the operator of the orders was applied for a model, which is what its solution costs.
-    pub fn applications(&mut self, model: &Model) -> Result<usize> {
+    pub(super) fn applications(&mut self, model: &Model) -> Result<usize> {
         let light = self.light(model)?;
         Ok(self.lights[light].solution.report.applications)
     }
 
     /// What a model costs to keep and to look up.
-    pub fn cost(&mut self, model: &Model) -> Result<Cost> {
+    pub(super) fn cost(&mut self, model: &Model) -> Result<Cost> {
         let light = self.light(model)?;
         Ok(model.cost(&self.lights[light].medium))
     }
 
-    pub fn medium(&mut self, model: &Model) -> Result<&Medium> {
+    pub(super) fn medium(&mut self, model: &Model) -> Result<&Medium> {
         let light = self.light(model)?;
         Ok(&self.lights[light].medium)
     }
 
     /// The light of a model, and the colours that suit its window.
-    pub fn lit(&mut self, model: &Model) -> Result<(&Medium, &Solution, Rc<Palette>)> {
+    pub(super) fn lit(&mut self, model: &Model) -> Result<(&Medium, &Solution, Rc<Palette>)> {
         let light = self.light(model)?;
         let palette = self.palette(light, &model.window)?;
         let Light { medium, solution, .. } = &self.lights[light];
@@ -111,7 +111,7 @@ impl<'a> Lab<'a> {
     }
 
     /// The sky that a model's bake would answer with.
-    pub fn sky(&mut self, model: &Model) -> Result<Box<dyn Sky>> {
+    pub(super) fn sky(&mut self, model: &Model) -> Result<Box<dyn Sky>> {
         self.measured += 1;
         let light = self.light(model)?;
         let palette = self.palette(light, &model.window)?;
@@ -139,12 +139,12 @@ impl<'a> Lab<'a> {
     }
 
     /// How a model does on some views.
-    pub fn measure(&mut self, model: &Model, judge: &Judge) -> Result<Errors> {
+    pub(super) fn measure(&mut self, model: &Model, judge: &Judge) -> Result<Errors> {
         Ok(judge.errors(self.sky(model)?.as_ref()))
     }
 
     /// Forgets tables, so that filling them again can be timed.
-    pub fn forget(&mut self) {
+    pub(super) fn forget(&mut self) {
         self.tables.clear();
         self.lights.clear();
     }

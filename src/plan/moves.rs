@@ -12,7 +12,7 @@ use crate::transport::solve::Orders;
 
 /// One thing to leave out.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Move {
+pub(super) enum Move {
     /// Altitudes and suns that the scene has not, and rays that meet the ground.
     Altitudes,
     Suns,
@@ -60,12 +60,12 @@ fn size_mut(model: &mut Model, kind: Kind) -> &mut [usize] {
 
 impl Move {
     /// The windows of a scene: what it cannot meet.
-    pub fn windows() -> [Move; 3] {
+    pub(super) fn windows() -> [Move; 3] {
         [Move::Altitudes, Move::Suns, Move::Ground]
     }
 
     /// Whole parts, and texels of every axis.
-    pub fn parts(medium: &Medium) -> Vec<Move> {
+    pub(super) fn parts(medium: &Medium) -> Vec<Move> {
         let (groups, _) = groups_to_fold(medium, &[]);
         let folds = groups.iter().map(|g| Move::Fold(medium.constituents[g[0]].name.clone()));
         let mut out: Vec<Move> = folds.collect();
@@ -81,7 +81,7 @@ impl Move {
     }
 
     /// What is left out, in words.
-    pub fn text(&self, scene: &Scene) -> String {
+    pub(super) fn text(&self, scene: &Scene) -> String {
         match self {
             Move::Altitudes => format!("altitudes but {}", heights(scene.altitudes)),
             Move::Suns => format!("suns but {}", degrees(scene.suns)),
@@ -96,7 +96,7 @@ impl Move {
     }
 
     /// From what to what a model changes, for axes.
-    pub fn sizes(&self, from: &Model, to: &Model) -> Option<[usize; 2]> {
+    pub(super) fn sizes(&self, from: &Model, to: &Model) -> Option<[usize; 2]> {
         let of = |kind: Kind, axis: usize| [from, to].map(|m| size_of(m, kind)[axis]);
         match self {
             Move::Shrink(kind, axis) => Some(of(*kind, *axis)),
@@ -106,7 +106,7 @@ impl Move {
     }
 
     /// The model without it; none where there is nothing to leave out.
-    pub fn applied(&self, model: &Model, scene: &Scene, lab: &mut Lab) -> Result<Option<Model>> {
+    pub(super) fn applied(&self, model: &Model, scene: &Scene, lab: &mut Lab) -> Result<Option<Model>> {
         let mut out = model.clone();
         let full = Model::default();
         match self {

@@ -32,7 +32,7 @@ pub struct Tried {
 }
 
 /// A search under way.
-pub struct Search<'a, 'b> {
+pub(super) struct Search<'a, 'b> {
     pub scene: &'a Scene,
     pub judge: &'a Judge,
     pub lab: &'a mut Lab<'b>,
@@ -58,12 +58,12 @@ struct Candidate {
 
 /// How many times the tolerance nine in ten of the views beyond the promised share keep within, or else within what the
 /// whole tables do there: a promise about 95 % is not one to spoil the rest.
-pub const TAIL: f64 = 4.0;
+pub(super) const TAIL: f64 = 4.0;
 /// Least strain that a saving is divided by: what costs less is as good as free.
 const FREE: f64 = 2e-3;
 
 impl<'a, 'b> Search<'a, 'b> {
-    pub fn new(
+    pub(super) fn new(
         scene: &'a Scene,
         judge: &'a Judge,
         lab: &'a mut Lab<'b>,
@@ -87,7 +87,7 @@ impl<'a, 'b> Search<'a, 'b> {
         })
     }
 
-    pub fn error(&self) -> f64 {
+    pub(super) fn error(&self) -> f64 {
         self.errors.at(self.share)
     }
 
@@ -110,7 +110,7 @@ impl<'a, 'b> Search<'a, 'b> {
     }
 
     /// Takes a step, and adds it to what was left out of the same axis before.
-    pub fn take(&mut self, model: Model, errors: Errors, omission: Omission) {
+    pub(super) fn take(&mut self, model: Model, errors: Errors, omission: Omission) {
         (self.model, self.errors) = (model.clone(), errors);
         self.history.push(model);
         let earlier = self.omissions.iter_mut().find(|o| o.left_out && o.what == omission.what);
@@ -134,7 +134,7 @@ impl<'a, 'b> Search<'a, 'b> {
     }
 
     /// Leaves out what the scene cannot meet, if that does no harm.
-    pub fn windows(&mut self) -> Result<()> {
+    pub(super) fn windows(&mut self) -> Result<()> {
         for step in Move::windows() {
             let Some((model, errors, omission)) = self.try_step(&step)? else { continue };
             let no_worse = errors.at(self.share) <= 1.1 * self.error() || self.holds(&errors);
@@ -144,7 +144,7 @@ impl<'a, 'b> Search<'a, 'b> {
     }
 
     /// The same with more texels on every axis of the tables of light, where what there is does not hold.
-    pub fn grow(&mut self, factor: f64) -> Result<()> {
+    pub(super) fn grow(&mut self, factor: f64) -> Result<()> {
         let mut model = self.model.clone();
         let more = |n: &mut usize, even: bool| {
             if *n > 1 {
@@ -165,7 +165,11 @@ impl<'a, 'b> Search<'a, 'b> {
 
     /// Leaves out parts and texels until nothing more holds. With `goal`, on until a model costs no more, whatever its
     /// error is.
-    pub fn parts(&mut self, talk: &mut dyn FnMut(&str), goal: Option<&dyn Fn(&Cost) -> bool>) -> Result<()> {
+    pub(super) fn parts(
+        &mut self,
+        talk: &mut dyn FnMut(&str),
+        goal: Option<&dyn Fn(&Cost) -> bool>,
+    ) -> Result<()> {
         let steps = Move::parts(self.lab.medium(&self.model.clone())?);
         let fresh = |step| Candidate { step, score: f64::INFINITY, measured_at: usize::MAX };
         let mut candidates: Vec<Candidate> = steps.into_iter().map(fresh).collect();
@@ -217,7 +221,7 @@ impl<'a, 'b> Search<'a, 'b> {
 
     /// Leaves out orders of scattering, where fewer cost the solver less and hold; and says what fewer wavelengths would
     /// cost, which save nothing: sixteen are worked on at once.
-    pub fn light(&mut self) -> Result<()> {
+    pub(super) fn light(&mut self) -> Result<()> {
         let all = self.lab.applications(&self.model.clone())?;
         for n in [2, 3, 4, 6] {
             if n >= all {
@@ -258,12 +262,12 @@ impl Omission {
 }
 
 /// The share that has nine in ten of the views beyond another one.
-pub fn beyond(share: f64) -> f64 {
+pub(super) fn beyond(share: f64) -> f64 {
     1.0 - 0.1 * (1.0 - share)
 }
 
 /// Of all that was tried, what nothing else beats in bytes, fetches and error; smallest first.
-pub fn front(tried: &[Tried]) -> Vec<Tried> {
+pub(super) fn front(tried: &[Tried]) -> Vec<Tried> {
     let beats = |a: &Tried, b: &Tried| {
         let no_worse = a.cost.bytes <= b.cost.bytes && a.cost.fetches <= b.cost.fetches && a.error <= b.error;
         no_worse && a != b

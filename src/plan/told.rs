@@ -6,7 +6,7 @@ use crate::transport::slab::WaterOrders;
 use serde_json::{Value, json};
 
 /// An amount of memory for people.
-pub fn bytes(n: usize) -> String {
+pub(super) fn bytes(n: usize) -> String {
     match n {
         n if n >= 1_000_000 => format!("{:.1} MB", n as f64 / 1e6),
         n if n >= 10_000 => format!("{} kB", n / 1000),

@@ -18,7 +18,7 @@ use std::path::Path;
 
 /// A planet and its light, over the water.
 #[derive(Clone, Copy)]
-pub struct Under<'a> {
+pub(super) struct Under<'a> {
     pub planet: &'a Planet,
     pub medium: &'a Medium,
     pub solution: &'a Solution,
@@ -27,7 +27,7 @@ pub struct Under<'a> {
 }
 
 /// A water under a planet's sky.
-pub struct Trial<'a> {
+pub(super) struct Trial<'a> {
     under: Under<'a>,
     water: Water,
     media: WaterMedium,
@@ -37,7 +37,7 @@ pub struct Trial<'a> {
 
 impl<'a> Trial<'a> {
     /// Errors: colours that cannot be fitted.
-    pub fn new(under: Under<'a>, water: &Water) -> Result<Self> {
+    pub(super) fn new(under: Under<'a>, water: &Water) -> Result<Self> {
         let Under { planet, medium, solution, palette, split } = under;
         let media = water.medium(&palette.four_nm());
         let slabs = slabs(&media);
@@ -54,7 +54,7 @@ impl<'a> Trial<'a> {
     }
 
     /// What leaves the water, RGB over the star's illuminance, by the slab solver; of `sky`, its colours alone are used.
-    pub fn truth(&self, views: &[WaterView], sky: &WaterSky) -> Vec<[f64; 3]> {
+    pub(super) fn truth(&self, views: &[WaterView], sky: &WaterSky) -> Vec<[f64; 3]> {
         let Under { medium, solution, palette, split, .. } = self.under;
         let one = |v: &WaterView| {
             let direct = solution.sun_transmittance(medium.ground_radius, v.mu_s);
@@ -72,7 +72,7 @@ impl<'a> Trial<'a> {
     }
 
     /// The water's tables at a size, by some orders of scattering, as a reader of the bake has them.
-    pub fn sky(&self, size: [usize; 3], orders: WaterOrders) -> Result<WaterSky> {
+    pub(super) fn sky(&self, size: [usize; 3], orders: WaterOrders) -> Result<WaterSky> {
         let waters = Waters { list: vec![self.water.clone()], size, orders, underwater: false };
         let tables = fill::tables(&self.water, &self.media, &self.slabs, &waters);
         let files = Files::unencoded(self.about.tables.iter().chain(&tables));
@@ -83,7 +83,7 @@ impl<'a> Trial<'a> {
     }
 
     /// What the tables answer, as [`Trial::truth`].
-    pub fn found(&self, views: &[WaterView], sky: &WaterSky) -> Vec<[f64; 3]> {
+    pub(super) fn found(&self, views: &[WaterView], sky: &WaterSky) -> Vec<[f64; 3]> {
         views.par_iter().map(|v| sky.rgb(&sky.leaving(v, Component::Total))).collect()
     }
 }

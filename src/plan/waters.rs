@@ -48,7 +48,7 @@ pub fn load(scene: &Scene) -> Result<Vec<Water>> {
 }
 
 /// Light over the waters.
-pub struct Sky<'a> {
+pub(super) struct Sky<'a> {
     pub planet: &'a Planet,
     pub medium: &'a Medium,
     pub solution: &'a Solution,
@@ -111,7 +111,7 @@ fn views(scene: &Scene, [shallow, deep]: [f64; 2], water: &Water, seed: u32) -> 
 }
 
 /// Plans the waters of a scene; none where it has none.
-pub fn plan(
+pub(super) fn plan(
     scene: &Scene,
     sky: &Sky,
     share: f64,

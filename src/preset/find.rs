@@ -15,7 +15,7 @@ const LAYOUTS: [&str; 3] = ["compact", "elek2010", "three-atmosphere"];
 ///
 /// # Errors
 /// `Argument` for an unknown name, `File` for a file that cannot be read.
-pub fn find(name_or_path: &str, wanted: PresetKind) -> Result<(String, String)> {
+pub(super) fn find(name_or_path: &str, wanted: PresetKind) -> Result<(String, String)> {
     let shipped = match wanted {
         PresetKind::Planet => library::planet(name_or_path),
         PresetKind::Water => library::water(name_or_path),
@@ -62,7 +62,7 @@ fn shipped(kind: PresetKind) -> Vec<&'static str> {
 }
 
 /// The kind of a shipped preset of this name.
-pub fn kind_of_shipped(name: &str) -> Option<PresetKind> {
+pub(super) fn kind_of_shipped(name: &str) -> Option<PresetKind> {
     PresetKind::ALL.into_iter().find(|&kind| shipped(kind).contains(&name))
 }
 

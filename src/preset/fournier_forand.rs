@@ -4,12 +4,12 @@ use super::PhaseLaw;
 use std::f64::consts::PI;
 
 /// Range of backscatter fractions that the line of Mobley et al. reaches with room to spare.
-pub const BACKSCATTER: (f64, f64) = (0.001, 0.05);
+pub(super) const BACKSCATTER: (f64, f64) = (0.001, 0.05);
 
 /// The law of a backscatter fraction. Relative refractive index n and Junge slope lie on the line
 /// n = 1.01 + 0.1542 (slope − 3) of Mobley, Sundman & Boss 2002; n is found so that the table itself, cut flat
 /// inside 0.01°, sends that fraction backwards.
-pub fn fournier_forand(backscatter_fraction: f64) -> PhaseLaw {
+pub(super) fn fournier_forand(backscatter_fraction: f64) -> PhaseLaw {
     let (mut low, mut high) = (1.012, 1.4);
     for _ in 0..60 {
         let n = 0.5 * (low + high);

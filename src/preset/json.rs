@@ -6,7 +6,7 @@ use serde_json::{Map, Number, Value};
 use std::fmt;
 
 /// Parses JSON; an error says line and column.
-pub fn parse(file: &str, text: &str) -> Result<Value> {
+pub(super) fn parse(file: &str, text: &str) -> Result<Value> {
     match serde_json::from_str::<Strict>(text) {
         Ok(strict) => Ok(strict.0),
         Err(e) => Err(Error::file(file, format!("malformed JSON: {e}"))),

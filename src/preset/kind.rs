@@ -69,7 +69,7 @@ fn marks(value: &Value, kind: PresetKind) -> usize {
 ///
 /// # Errors
 /// `Argument`: nothing in the file is wrong.
-pub fn refuse_other(file: &str, value: &Value, wanted: PresetKind) -> Result<()> {
+pub(super) fn refuse_other(file: &str, value: &Value, wanted: PresetKind) -> Result<()> {
     match of(value) {
         Some(other) if marks(value, wanted) == 0 && marks(value, other) > 1 => {
             let taken_by = other.taken_by(file);

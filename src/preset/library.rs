@@ -90,7 +90,7 @@ pub fn shipped_water_names() -> impl Iterator<Item = &'static str> {
 }
 
 /// Names of the shipped scenes.
-pub fn scene_names() -> impl Iterator<Item = &'static str> {
+pub(super) fn scene_names() -> impl Iterator<Item = &'static str> {
     SCENES.iter().map(|s| s.0)
 }
 
@@ -110,7 +110,7 @@ pub fn shipped_scenes() -> Vec<(&'static str, String)> {
 }
 
 /// File name (as in the source tree) and JSON text of a shipped scene.
-pub fn scene(name: &str) -> Option<(String, &'static str)> {
+pub(super) fn scene(name: &str) -> Option<(String, &'static str)> {
     let (_, text) = SCENES.iter().find(|s| s.0 == name)?;
     Some((format!("presets/scenes/{name}.json"), text))
 }
@@ -121,24 +121,24 @@ fn describe((name, text): &(&'static str, &str)) -> (&'static str, String) {
 }
 
 /// File name (as in the source tree) and JSON text of a shipped water.
-pub fn water(name: &str) -> Option<(String, &'static str)> {
+pub(super) fn water(name: &str) -> Option<(String, &'static str)> {
     let (_, text) = WATERS.iter().find(|w| w.0 == name)?;
     Some((format!("presets/waters/{name}.json"), text))
 }
 
 /// File name (as in the source tree) and JSON text of a shipped preset.
-pub fn planet(name: &str) -> Option<(String, &'static str)> {
+pub(super) fn planet(name: &str) -> Option<(String, &'static str)> {
     let (_, text) = PLANETS.iter().find(|p| p.0 == name)?;
     Some((format!("presets/planets/{name}.json"), text))
 }
 
 /// Names of the shipped spectra.
-pub fn spectrum_names() -> impl Iterator<Item = &'static str> {
+pub(super) fn spectrum_names() -> impl Iterator<Item = &'static str> {
     SPECTRA.iter().map(|s| s.0)
 }
 
 /// Names of the shipped spectra of a quantity: those whose header says so.
-pub fn spectra_of(quantity: &str) -> Vec<&'static str> {
+pub(super) fn spectra_of(quantity: &str) -> Vec<&'static str> {
     let header = format!("wavelength_nm,{quantity}");
     SPECTRA.iter().filter(|s| s.1.lines().any(|line| line.trim() == header)).map(|s| s.0).collect()
 }
@@ -146,7 +146,7 @@ pub fn spectra_of(quantity: &str) -> Vec<&'static str> {
 /// A shipped spectrum by name, or a CSV file by a name that ends in `.csv`, beside the preset or else from the
 /// current folder. The file has a
 /// line `# source: …`, then a header `wavelength_nm,<quantity>`, which must be `quantity`, then rows.
-pub fn spectrum(name: &str, quantity: &str, beside: &str) -> Result<Option<Spectrum>> {
+pub(super) fn spectrum(name: &str, quantity: &str, beside: &str) -> Result<Option<Spectrum>> {
     if let Some((_, text)) = SPECTRA.iter().find(|s| s.0 == name) {
         return parse(&format!("presets/spectra/{name}.csv"), text, quantity).map(Some);
     }
@@ -156,7 +156,7 @@ pub fn spectrum(name: &str, quantity: &str, beside: &str) -> Result<Option<Spect
 }
 
 /// Where the spectrum of a name lies on disk; none for a shipped one, or a name that is not of a CSV file.
-pub fn spectrum_path(name: &str, beside: &str) -> Option<PathBuf> {
+pub(super) fn spectrum_path(name: &str, beside: &str) -> Option<PathBuf> {
     if spectrum_names().any(|shipped| shipped == name) || !name.ends_with(".csv") {
         return None;
     }

@@ -13,7 +13,7 @@ const COEFFICIENTS: [&str; 3] = ["scattering", "absorption", "extinction"];
 
 /// Warnings where the top cuts off air that is seen, and where most of the shell is empty; `top` and `constituents` are
 /// the file's.
-pub fn lost(medium: &Medium, top: &Raw, constituents: &[Raw]) -> Result<Vec<String>> {
+pub(super) fn lost(medium: &Medium, top: &Raw, constituents: &[Raw]) -> Result<Vec<String>> {
     let (_, height) = top.one_of(&["height_km", "height_m"])?;
     let at = format!("{} = {}", height.path(), height.number()?);
     let mut out = Vec::new();

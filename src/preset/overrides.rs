@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use serde_json::{Map, Value};
 
 /// Applies one assignment. Errors: no `=`, a path that leads nowhere (with the nearest key that exists).
-pub fn apply(root: &mut Value, file: &str, assignment: &str) -> Result<()> {
+pub(super) fn apply(root: &mut Value, file: &str, assignment: &str) -> Result<()> {
     let refuse = |reason: String| Error::Argument(format!("--set {assignment}: {reason} ({file})"));
     let (path, text) =
         assignment.split_once('=').ok_or_else(|| refuse("needs the form path.to.key=value".into()))?;

@@ -6,7 +6,7 @@ use crate::spectrum::Spectrum;
 use serde::{Deserialize, Serialize};
 
 /// Angles of a tabulated phase function at most: one every hundredth of a degree, and some.
-pub const MOST_ANGLES: usize = 20_000;
+pub(super) const MOST_ANGLES: usize = 20_000;
 
 /// Which asymmetry a preset states for a Cornette–Shanks function, whose parameter is not its mean cosine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -7,35 +7,35 @@ use crate::error::{Error, Result};
 use serde_json::{Map, Value};
 
 /// Longest length of a preset, m: more than the radius of the largest star.
-pub const MOST_METRES: f64 = 1e13;
+pub(super) const MOST_METRES: f64 = 1e13;
 
 /// What is wrong with `"g": "0.76"`.
-pub const WITHOUT_QUOTES: &str = "must be a finite number; quotation marks make it a text";
+pub(super) const WITHOUT_QUOTES: &str = "must be a finite number; quotation marks make it a text";
 
 /// A JSON value, the file it stands in and the path to it (`constituents[1].phase.g`).
 #[derive(Clone, Debug)]
-pub struct Raw<'a> {
+pub(super) struct Raw<'a> {
     file: &'a str,
     path: String,
     value: &'a Value,
 }
 
 impl<'a> Raw<'a> {
-    pub fn root(file: &'a str, value: &'a Value) -> Self {
+    pub(super) fn root(file: &'a str, value: &'a Value) -> Self {
         Raw { file, path: String::new(), value }
     }
 
-    pub fn file(&self) -> &'a str {
+    pub(super) fn file(&self) -> &'a str {
         self.file
     }
 
     /// Path of this value; `(top level)` for the whole file.
-    pub fn path(&self) -> &str {
+    pub(super) fn path(&self) -> &str {
         if self.path.is_empty() { "(top level)" } else { &self.path }
     }
 
     /// An error about this value.
-    pub fn refuse(&self, reason: impl ToString) -> Error {
+    pub(super) fn refuse(&self, reason: impl ToString) -> Error {
         Error::Value {
             file: self.file.to_string(),
             key: self.path().to_string(),
@@ -54,7 +54,7 @@ impl<'a> Raw<'a> {
     }
 
     /// Refuses keys that are not known here, naming the nearest or all known; `source` is known everywhere.
-    pub fn only(&self, known: &[&str]) -> Result<()> {
+    pub(super) fn only(&self, known: &[&str]) -> Result<()> {
         #[cfg(test)]
         super::schema::record::note(known);
         let known_here = known.iter().copied().chain(["source"]);
@@ -67,11 +67,11 @@ impl<'a> Raw<'a> {
         Ok(())
     }
 
-    pub fn get(&self, key: &str) -> Result<Option<Raw<'a>>> {
+    pub(super) fn get(&self, key: &str) -> Result<Option<Raw<'a>>> {
         Ok(self.map()?.get_key_value(key).map(|(k, v)| self.child(k, v)))
     }
 
-    pub fn need(&self, key: &str) -> Result<Raw<'a>> {
+    pub(super) fn need(&self, key: &str) -> Result<Raw<'a>> {
         if let Some(found) = self.get(key)? {
             return Ok(found);
         }
@@ -81,13 +81,13 @@ impl<'a> Raw<'a> {
     }
 
     /// The only one of several alternative keys that is given, with its number in the list.
-    pub fn one_of(&self, keys: &[&str]) -> Result<(usize, Raw<'a>)> {
+    pub(super) fn one_of(&self, keys: &[&str]) -> Result<(usize, Raw<'a>)> {
         self.at_most_one_of(keys)?
             .ok_or_else(|| self.refuse(format!("one of {} is missing", names::quoted(keys.iter().copied()))))
     }
 
     /// The only one of several alternative keys, or none; two are refused.
-    pub fn at_most_one_of(&self, keys: &[&str]) -> Result<Option<(usize, Raw<'a>)>> {
+    pub(super) fn at_most_one_of(&self, keys: &[&str]) -> Result<Option<(usize, Raw<'a>)>> {
         let mut found = None;
         for (k, key) in keys.iter().enumerate() {
             if let Some(raw) = self.get(key)? {
@@ -102,29 +102,29 @@ impl<'a> Raw<'a> {
         Ok(found)
     }
 
-    pub fn is_number(&self) -> bool {
+    pub(super) fn is_number(&self) -> bool {
         self.value.is_number()
     }
 
-    pub fn is_text(&self) -> bool {
+    pub(super) fn is_text(&self) -> bool {
         self.value.is_string()
     }
 
     /// Whether it is a number in quotation marks, which JSON takes for a text.
-    pub fn is_quoted_number(&self) -> bool {
+    pub(super) fn is_quoted_number(&self) -> bool {
         self.value.as_str().is_some_and(names::is_number)
     }
 
-    pub fn text(&self) -> Result<&'a str> {
+    pub(super) fn text(&self) -> Result<&'a str> {
         self.value.as_str().ok_or_else(|| self.refuse("must be a text"))
     }
 
-    pub fn flag(&self) -> Result<bool> {
+    pub(super) fn flag(&self) -> Result<bool> {
         self.value.as_bool().ok_or_else(|| self.refuse("must be true or false"))
     }
 
     /// A text out of a list, by number; another is refused with the nearest.
-    pub fn choice(&self, choices: &[&str]) -> Result<usize> {
+    pub(super) fn choice(&self, choices: &[&str]) -> Result<usize> {
         let text = self.text()?;
         choices.iter().position(|c| *c == text).ok_or_else(|| {
             let all = names::quoted(choices.iter().copied());
@@ -136,7 +136,7 @@ impl<'a> Raw<'a> {
     }
 
     /// A finite number.
-    pub fn number(&self) -> Result<f64> {
+    pub(super) fn number(&self) -> Result<f64> {
         match self.value.as_f64() {
             Some(v) if v.is_finite() => Ok(v),
             _ if self.is_quoted_number() => Err(self.refuse(WITHOUT_QUOTES)),
@@ -145,24 +145,24 @@ impl<'a> Raw<'a> {
     }
 
     /// A number inside bounds.
-    pub fn number_in(&self, bounds: Bounds) -> Result<f64> {
+    pub(super) fn number_in(&self, bounds: Bounds) -> Result<f64> {
         let v = self.number()?;
         if bounds.hold(v) { Ok(v) } else { Err(self.refuse(format!("must be {}", bounds.text))) }
     }
 
-    pub fn items(&self) -> Result<Vec<Raw<'a>>> {
+    pub(super) fn items(&self) -> Result<Vec<Raw<'a>>> {
         let list = self.value.as_array().ok_or_else(|| self.refuse("must be a list [ … ]"))?;
         let item = |(k, value)| Raw { file: self.file, path: format!("{}[{k}]", self.path), value };
         Ok(list.iter().enumerate().map(item).collect())
     }
 
     /// A list of numbers inside bounds; a bad one is named by its place.
-    pub fn numbers_in(&self, bounds: Bounds) -> Result<Vec<f64>> {
+    pub(super) fn numbers_in(&self, bounds: Bounds) -> Result<Vec<f64>> {
         self.items()?.iter().map(|item| item.number_in(bounds)).collect()
     }
 
     /// A list of at least `least` numbers, each greater than the one before.
-    pub fn rising(&self, least: usize) -> Result<Vec<f64>> {
+    pub(super) fn rising(&self, least: usize) -> Result<Vec<f64>> {
         let items = self.items()?;
         if items.len() < least {
             return Err(self.refuse(format!("must have {least} or more numbers")));
@@ -180,7 +180,7 @@ impl<'a> Raw<'a> {
 
     /// Key `{stem}_m` or `{stem}_km`, whichever is given, as a length in metres (no longer than any star is wide)
     /// whose number is inside bounds.
-    pub fn length(&self, stem: &str, bounds: Bounds) -> Result<f64> {
+    pub(super) fn length(&self, stem: &str, bounds: Bounds) -> Result<f64> {
         let (metres, kilometres) = (format!("{stem}_m"), format!("{stem}_km"));
         let (unit, raw) = self.one_of(&[&kilometres, &metres])?;
         let length = raw.number_in(bounds)? * [1e3, 1.0][unit];
@@ -191,7 +191,7 @@ impl<'a> Raw<'a> {
     }
 
     /// Every object that holds numbers must say where they come from.
-    pub fn check_sources(&self) -> Result<()> {
+    pub(super) fn check_sources(&self) -> Result<()> {
         match self.value {
             Value::Object(map) => {
                 let source = map.get("source");
@@ -214,7 +214,7 @@ impl<'a> Raw<'a> {
 }
 
 /// True of a number and of a list that holds numbers, at any depth.
-pub fn bears_numbers(value: &Value) -> bool {
+pub(super) fn bears_numbers(value: &Value) -> bool {
     match value {
         Value::Number(_) => true,
         Value::Array(list) => list.iter().any(bears_numbers),

@@ -7,24 +7,24 @@ use super::read_spectrum::{CROSS_SECTION, KING_FACTOR, REFRACTIVE_INDEX, spectru
 use crate::error::Result;
 use crate::spectrum::Spectrum;
 
-pub const KINDS: [&str; 6] =
+pub(super) const KINDS: [&str; 6] =
     ["constant", "table", "power_law", "refractive_index", "bodhaine1999", "cross_section"];
 
 /// Units in which a coefficient may be stated; the last is the vertical optical depth of the whole shell.
-pub const UNITS: [&str; 3] = ["per_m", "per_km", "optical_depth"];
+pub(super) const UNITS: [&str; 3] = ["per_m", "per_km", "optical_depth"];
 
 /// Ångström exponents; gas has 4.
-pub const EXPONENT: Bounds = Bounds::within(-10.0, 10.0, "between -10 and 10");
-pub const CO2_PPM: Bounds = Bounds::within(0.0, 1e4, "between 0 and 10000 (air)");
+pub(super) const EXPONENT: Bounds = Bounds::within(-10.0, 10.0, "between -10 and 10");
+pub(super) const CO2_PPM: Bounds = Bounds::within(0.0, 1e4, "between 0 and 10000 (air)");
 /// Keys of a cross-section's amount.
-pub const AMOUNTS: [&str; 3] = ["number_density_per_m3", "column_per_m2", "column_du"];
+pub(super) const AMOUNTS: [&str; 3] = ["number_density_per_m3", "column_per_m2", "column_du"];
 
 /// Molecules in a square metre for one Dobson unit (2.6868e20: 1e-5 m at 273.15 K and 1013.25 hPa).
 const DOBSON_UNIT: f64 = 2.686_8e20;
 
 /// The coefficient where the density is 1, 1/m; `column` is ∫ density dz of the profile in m, by which optical
 /// depths and columns are divided.
-pub fn coefficient(raw: &Raw, column: f64) -> Result<Coefficient> {
+pub(super) fn coefficient(raw: &Raw, column: f64) -> Result<Coefficient> {
     match raw.need("kind")?.choice(&KINDS)? {
         0 => {
             raw.only(&["kind", "per_m", "per_km", "optical_depth"])?;
@@ -61,7 +61,7 @@ pub fn coefficient(raw: &Raw, column: f64) -> Result<Coefficient> {
 }
 
 /// `co2_ppm` of the formulas for dry air.
-pub fn co2_ppm(raw: &Raw) -> Result<f64> {
+pub(super) fn co2_ppm(raw: &Raw) -> Result<f64> {
     raw.need("co2_ppm")?.number_in(CO2_PPM)
 }
 

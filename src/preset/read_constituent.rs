@@ -14,10 +14,10 @@ use crate::medium::Role;
 use crate::spectrum::{Spectrum, fine_grid};
 
 /// What a constituent can be to the layouts: [`Role::Gas`], [`Role::Aerosol`].
-pub const ROLES: [&str; 2] = ["gas", "aerosol"];
+pub(super) const ROLES: [&str; 2] = ["gas", "aerosol"];
 
 /// The constituent, and warnings about what its tables leave open; `height` is that of the shell, m.
-pub fn constituent(raw: &Raw, height: f64) -> Result<(Substance, Vec<String>)> {
+pub(super) fn constituent(raw: &Raw, height: f64) -> Result<(Substance, Vec<String>)> {
     raw.only(&[
         "name",
         "role",

@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::medium::PhaseFunction;
 use crate::spectrum::Spectrum;
 
-pub const KINDS: [&str; 6] = [
+pub(super) const KINDS: [&str; 6] = [
     "isotropic",
     "rayleigh",
     "henyey_greenstein",
@@ -19,10 +19,10 @@ pub const KINDS: [&str; 6] = [
 ];
 
 /// The King factor of air as a formula.
-pub const AIR_KING_FACTOR: &str = "bodhaine1999";
+pub(super) const AIR_KING_FACTOR: &str = "bodhaine1999";
 
 /// The phase function at every wavelength.
-pub fn phase(raw: &Raw) -> Result<PhaseLaw> {
+pub(super) fn phase(raw: &Raw) -> Result<PhaseLaw> {
     match raw.need("kind")?.choice(&KINDS)? {
         0 => {
             raw.only(&["kind"])?;

@@ -14,16 +14,16 @@ use std::f64::consts::PI;
 /// Astronomical unit, m (IAU 2012 Resolution B2, exact).
 const ASTRONOMICAL_UNIT: f64 = 149_597_870_700.0;
 
-pub const DISTANCE_AU: Bounds = Bounds::up_to(0.0, 1e6, "greater than 0, and 1e6 at the most");
-pub const ANGULAR_RADIUS_DEG: Bounds = Bounds::between(0.0, 90.0, "greater than 0 and less than 90");
-pub const BLACK_BODY_K: Bounds = Bounds::within(100.0, 1e6, "between 100 and 1000000");
+pub(super) const DISTANCE_AU: Bounds = Bounds::up_to(0.0, 1e6, "greater than 0, and 1e6 at the most");
+pub(super) const ANGULAR_RADIUS_DEG: Bounds = Bounds::between(0.0, 90.0, "greater than 0 and less than 90");
+pub(super) const BLACK_BODY_K: Bounds = Bounds::within(100.0, 1e6, "between 100 and 1000000");
 /// Letters of a name at most, as in [`NAME`].
 const MOST_NAME: usize = 100;
 /// What the name of a planet or water may consist of, as a regular expression.
-pub const NAME: &str = "^[a-z0-9-]{1,100}$";
+pub(super) const NAME: &str = "^[a-z0-9-]{1,100}$";
 
 /// The whole planet.
-pub fn planet(raw: &Raw) -> Result<Planet> {
+pub(super) fn planet(raw: &Raw) -> Result<Planet> {
     raw.only(&[SCHEMA_KEY, "name", "description", "ground", "top", "star", "constituents"])?;
     schema_key(raw)?;
     let ground = raw.need("ground")?;
@@ -76,14 +76,14 @@ pub fn planet(raw: &Raw) -> Result<Planet> {
 }
 
 /// The key by which an editor finds the schema of a file; it means nothing to the preset.
-pub const SCHEMA_KEY: &str = "$schema";
+pub(super) const SCHEMA_KEY: &str = "$schema";
 
-pub fn schema_key(raw: &Raw) -> Result<()> {
+pub(super) fn schema_key(raw: &Raw) -> Result<()> {
     raw.get(SCHEMA_KEY)?.map_or(Ok(()), |key| key.text().map(drop))
 }
 
 /// The name becomes a folder's, so only letters that every file system and shell takes are let in.
-pub fn name(raw: &Raw) -> Result<String> {
+pub(super) fn name(raw: &Raw) -> Result<String> {
     let raw = raw.need("name")?;
     let text = raw.text()?;
     check_name(text).map_err(|reason| raw.refuse(reason))?;
@@ -91,7 +91,7 @@ pub fn name(raw: &Raw) -> Result<String> {
 }
 
 /// Whether a text can be a name; the reason why not.
-pub fn check_name(text: &str) -> std::result::Result<(), String> {
+pub(super) fn check_name(text: &str) -> std::result::Result<(), String> {
     let good = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     if text.is_empty() || !text.chars().all(good) {
         return Err("must consist of lower-case letters, digits and dashes".into());

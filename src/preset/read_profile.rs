@@ -5,10 +5,10 @@ use super::raw::{MOST_METRES, Raw};
 use crate::error::Result;
 use crate::medium::{DensityProfile, MOST_NODES};
 
-pub const KINDS: [&str; 5] = ["exponential", "tent", "layer", "linear", "log_linear"];
+pub(super) const KINDS: [&str; 5] = ["exponential", "tent", "layer", "linear", "log_linear"];
 
 /// The density profile, altitudes in m over the ground.
-pub fn profile(raw: &Raw) -> Result<DensityProfile> {
+pub(super) fn profile(raw: &Raw) -> Result<DensityProfile> {
     match raw.need("kind")?.choice(&KINDS)? {
         0 => {
             raw.only(&["kind", "scale_height_km", "scale_height_m"])?;
@@ -63,7 +63,7 @@ fn nodes(raw: &Raw, bounds: Bounds) -> Result<Vec<(f64, f64)>> {
 }
 
 /// A warning where a tabulated profile begins above the ground or ends below the top: nothing is there.
-pub fn absent(name: &str, profile: &DensityProfile, height: f64) -> Option<String> {
+pub(super) fn absent(name: &str, profile: &DensityProfile, height: f64) -> Option<String> {
     let (DensityProfile::Linear { nodes } | DensityProfile::LogLinear { nodes }) = profile else {
         return None;
     };

@@ -14,10 +14,10 @@ const PERCENT: Bounds = Bounds::within(1e-9, 1000.0, "between 1e-9 and 1000");
 const DELTA_E: Bounds = Bounds::within(1e-9, 100.0, "between 1e-9 and 100");
 
 /// Key that tells a scene from other presets.
-pub const MARK: &str = "tolerance";
+pub(super) const MARK: &str = "tolerance";
 
 /// The whole scene.
-pub fn scene(raw: &Raw) -> Result<Scene> {
+pub(super) fn scene(raw: &Raw) -> Result<Scene> {
     raw.only(&[
         SCHEMA_KEY,
         "name",

@@ -9,27 +9,27 @@ use crate::spectrum::{RANGE, Spectrum};
 
 /// What values a spectral quantity may take.
 #[derive(Clone, Copy)]
-pub struct Quantity {
+pub(super) struct Quantity {
     /// Header of its column in spectrum files.
     pub column: &'static str,
     pub bounds: Bounds,
 }
 
-pub const SHARE: Quantity = Quantity { column: "share", bounds: bounds::SHARE };
-pub const ASYMMETRY: Quantity =
+pub(super) const SHARE: Quantity = Quantity { column: "share", bounds: bounds::SHARE };
+pub(super) const ASYMMETRY: Quantity =
     Quantity { column: "asymmetry", bounds: Bounds::between(-1.0, 1.0, "greater than -1 and less than 1") };
-pub const KING_FACTOR: Quantity = Quantity {
+pub(super) const KING_FACTOR: Quantity = Quantity {
     column: "king_factor",
     bounds: Bounds::within(1.0, 1.5, "between 1 and 1.5 (no to strong depolarisation)"),
 };
-pub const REFRACTIVE_INDEX: Quantity =
+pub(super) const REFRACTIVE_INDEX: Quantity =
     Quantity { column: "refractive_index", bounds: Bounds::below(1.0, 2.0, "1 or more, below 2 (a gas)") };
-pub const CROSS_SECTION: Quantity = Quantity { column: "cross_section_m2", bounds: NOT_NEGATIVE };
-pub const IRRADIANCE: Quantity = Quantity { column: "irradiance_w_m2_nm", bounds: NOT_NEGATIVE };
+pub(super) const CROSS_SECTION: Quantity = Quantity { column: "cross_section_m2", bounds: NOT_NEGATIVE };
+pub(super) const IRRADIANCE: Quantity = Quantity { column: "irradiance_w_m2_nm", bounds: NOT_NEGATIVE };
 
 /// A number (constant), a name (shipped spectrum, or `.csv` beside the preset) or
 /// `{"wavelengths_nm": […], "values": […], "source": …}`.
-pub fn spectrum(raw: &Raw, quantity: Quantity) -> Result<Spectrum> {
+pub(super) fn spectrum(raw: &Raw, quantity: Quantity) -> Result<Spectrum> {
     if raw.is_number() {
         return Ok(Spectrum::constant(raw.number_in(quantity.bounds)?));
     }
@@ -41,7 +41,7 @@ pub fn spectrum(raw: &Raw, quantity: Quantity) -> Result<Spectrum> {
 }
 
 /// Lists `wavelengths_nm` and `key` of an object as a spectrum.
-pub fn table(raw: &Raw, key: &str, bounds: Bounds) -> Result<Spectrum> {
+pub(super) fn table(raw: &Raw, key: &str, bounds: Bounds) -> Result<Spectrum> {
     let w = wavelengths(&raw.need("wavelengths_nm")?)?;
     let values = raw.need(key)?;
     let v = values.numbers_in(bounds)?;
@@ -52,7 +52,7 @@ pub fn table(raw: &Raw, key: &str, bounds: Bounds) -> Result<Spectrum> {
 }
 
 /// One wavelength or more, rising, nm.
-pub fn wavelengths(raw: &Raw) -> Result<Vec<f64>> {
+pub(super) fn wavelengths(raw: &Raw) -> Result<Vec<f64>> {
     let list = raw.rising(1)?;
     if list[0] <= 0.0 {
         return Err(raw.refuse("wavelengths must be greater than 0"));
@@ -80,7 +80,7 @@ fn named(raw: &Raw, quantity: Quantity) -> Result<Spectrum> {
 }
 
 /// A warning where a spectrum ends inside 380–780 nm.
-pub fn held(what: &str, spectrum: &Spectrum) -> Option<String> {
+pub(super) fn held(what: &str, spectrum: &Spectrum) -> Option<String> {
     let (first, last) = spectrum.held_outside(RANGE.0, RANGE.1)?;
     Some(format!("{what} is given over {first}–{last} nm only; its end values are held over 380–780 nm"))
 }

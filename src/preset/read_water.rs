@@ -13,23 +13,23 @@ use super::water::{Water, WaterLaw, WaterSubstance};
 use crate::error::Result;
 use crate::spectrum::Spectrum;
 
-pub const INDEX: Quantity =
+pub(super) const INDEX: Quantity =
     Quantity { column: "refractive_index", bounds: Bounds::within(1.0, 2.5, "between 1 and 2.5") };
-pub const PER_M: Quantity = Quantity { column: "per_m", bounds: NOT_NEGATIVE };
-pub const EXPONENT: Quantity =
+pub(super) const PER_M: Quantity = Quantity { column: "per_m", bounds: NOT_NEGATIVE };
+pub(super) const EXPONENT: Quantity =
     Quantity { column: "exponent", bounds: Bounds::within(0.0, 2.0, "between 0 and 2") };
-pub const LARGEST_DEPTH_M: Bounds = Bounds::up_to(0.0, 11_000.0, "over 0 and at most 11000 m");
-pub const SLOPE_PER_NM: Bounds = Bounds::within(-0.1, 0.1, "between -0.1 and 0.1");
-pub const CHLOROPHYLL: Bounds = Bounds::up_to(0.0, 1000.0, "over 0 and at most 1000 mg/m3");
-pub const BACKSCATTER_FRACTION: Bounds =
+pub(super) const LARGEST_DEPTH_M: Bounds = Bounds::up_to(0.0, 11_000.0, "over 0 and at most 11000 m");
+pub(super) const SLOPE_PER_NM: Bounds = Bounds::within(-0.1, 0.1, "between -0.1 and 0.1");
+pub(super) const CHLOROPHYLL: Bounds = Bounds::up_to(0.0, 1000.0, "over 0 and at most 1000 mg/m3");
+pub(super) const BACKSCATTER_FRACTION: Bounds =
     Bounds::within(BACKSCATTER.0, BACKSCATTER.1, "between 0.001 and 0.05");
-pub const DEPOLARISATION: Bounds = Bounds::within(0.0, 0.5, "between 0 and 0.5");
+pub(super) const DEPOLARISATION: Bounds = Bounds::within(0.0, 0.5, "between 0 and 0.5");
 
 /// Keys that tell a water from a planet.
-pub const MARK: &str = "pure_water";
+pub(super) const MARK: &str = "pure_water";
 
 /// The whole water.
-pub fn water(raw: &Raw) -> Result<Water> {
+pub(super) fn water(raw: &Raw) -> Result<Water> {
     raw.only(&[
         SCHEMA_KEY,
         "name",
@@ -112,10 +112,11 @@ fn substance(raw: &Raw, called: Option<&str>, warnings: &mut Vec<String>) -> Res
 }
 
 /// Kinds of coefficients: three of air's, three of water's own.
-pub const LAWS: [&str; 6] = ["constant", "table", "power_law", "spectrum", "exponential", "chlorophyll"];
+pub(super) const LAWS: [&str; 6] =
+    ["constant", "table", "power_law", "spectrum", "exponential", "chlorophyll"];
 /// Kinds of phase functions that air has not.
-pub const FOURNIER_FORAND: &str = "fournier_forand";
-pub const MOLECULAR: &str = "molecular";
+pub(super) const FOURNIER_FORAND: &str = "fournier_forand";
+pub(super) const MOLECULAR: &str = "molecular";
 
 fn law(raw: &Raw, factor: f64, scatters: bool) -> Result<WaterLaw> {
     let plain = |coefficient| WaterLaw::Plain { coefficient, factor };

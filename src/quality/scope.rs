@@ -8,7 +8,7 @@ use sobol_burley::sample;
 /// picture's detail is.
 const HORIZON: f64 = 0.25;
 /// Lowest sun of scopes that do not state one, degrees: nautical twilight ends there.
-pub const LOWEST_SUN: f64 = -12.0;
+pub(super) const LOWEST_SUN: f64 = -12.0;
 /// How close, degrees.
 const CLOSE: f64 = 5.0;
 

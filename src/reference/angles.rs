@@ -11,7 +11,7 @@ const CUTS: usize = 1024;
 
 /// Draws the cosine of the scattering angle with the phase function's density: linear between nodes that
 /// are as close as the tolerance needs, by inversion of its integral.
-pub struct ScatteringAngle {
+pub(super) struct ScatteringAngle {
     /// (cosine, probability up to it, density 2π p), rising.
     nodes: Vec<(f64, f64, f64)>,
     /// For each of `CUTS` equal parts of 0 … 1: the first piece that reaches into it.
@@ -19,7 +19,7 @@ pub struct ScatteringAngle {
 }
 
 impl ScatteringAngle {
-    pub fn new(phase: &PhaseFunction) -> Self {
+    pub(super) fn new(phase: &PhaseFunction) -> Self {
         let mut cosines = vec![-1.0];
         let breaks = match phase {
             PhaseFunction::Tabulated { nodes } => nodes.iter().map(|n| n.0).collect(),
@@ -49,7 +49,7 @@ impl ScatteringAngle {
     }
 
     /// The cosine at which the probability below it is `u`.
-    pub fn sample(&self, u: f64) -> f64 {
+    pub(super) fn sample(&self, u: f64) -> f64 {
         let mut k = self.cuts[((u * CUTS as f64) as usize).min(CUTS - 1)] as usize;
         while k + 2 < self.nodes.len() && self.nodes[k + 1].1 <= u {
             k += 1;
@@ -81,7 +81,7 @@ fn refine(phase: &PhaseFunction, a: f64, b: f64, cosines: &mut Vec<f64>) {
 
 /// The direction at a cosine from an axis, turned by 2π `turn` around it.
 #[inline]
-pub fn around(axis: DVec3, cosine: f64, turn: f64) -> DVec3 {
+pub(super) fn around(axis: DVec3, cosine: f64, turn: f64) -> DVec3 {
     // Frame of Duff et al. 2017 (JCGT 6(1)), which has no branch to lose digits at.
     let sign = 1.0_f64.copysign(axis.z);
     let a = -1.0 / (sign + axis.z);

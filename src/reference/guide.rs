@@ -9,15 +9,15 @@ use std::f64::consts::PI;
 const SUNS: usize = 64;
 /// Altitudes and sun angles at which diffuse light is learnt.
 const BANDS: usize = 16;
-pub const ANGLES: usize = 25;
+pub(super) const ANGLES: usize = 25;
 /// Bins of directions: cosine of the zenith angle, and half a turn of azimuth from the sun's.
-pub const ZENITHS: usize = 12;
-pub const AZIMUTHS: usize = 4;
-pub const BINS: usize = ZENITHS * AZIMUTHS;
+pub(super) const ZENITHS: usize = 12;
+pub(super) const AZIMUTHS: usize = 4;
+pub(super) const BINS: usize = ZENITHS * AZIMUTHS;
 /// Smallest diffuse light that sampling counts with, relative to the brightest at the same sun angle.
 const FLOOR: f64 = 0.02;
 
-pub struct Guide {
+pub(super) struct Guide {
     /// Transmittance to the sun in the middle of each shell, at even steps of √((mu_s − horizon)/(1 − horizon)).
     sun: Vec<[f64; SUNS]>,
     /// Cosine of the horizon's zenith angle in the middle of each shell.
@@ -34,7 +34,7 @@ pub struct Guide {
 
 impl Guide {
     /// Direct light, and a first guess of diffuse light.
-    pub fn new(shells: &Shells) -> Self {
+    pub(super) fn new(shells: &Shells) -> Self {
         let count = shells.count();
         let middle = |k: usize| (0.5 * (shells.edges2[k] + shells.edges2[k + 1])).sqrt();
         let bands = BANDS.min(count);
@@ -71,7 +71,7 @@ impl Guide {
     }
 
     /// Takes over what the radiance was found to be in each bin of directions (bands × sun angles).
-    pub fn learn(&mut self, radiance: &[[f64; BINS]]) {
+    pub(super) fn learn(&mut self, radiance: &[[f64; BINS]]) {
         for a in 0..ANGLES {
             let mean = |b: usize| {
                 let bins = &radiance[b * ANGLES + a];
@@ -88,7 +88,7 @@ impl Guide {
 
     /// Transmittance to the sun somewhere in a shell.
     #[inline]
-    pub fn transmittance(&self, shell: usize, mu_s: f64) -> f64 {
+    pub(super) fn transmittance(&self, shell: usize, mu_s: f64) -> f64 {
         let h = self.horizon[shell];
         let v = (mu_s - h) / (1.0 - h);
         if v <= 0.0 {
@@ -103,7 +103,7 @@ impl Guide {
 
     /// Mean diffuse radiance somewhere in a shell, 1/sr.
     #[inline]
-    pub fn diffuse(&self, shell: usize, mu_s: f64) -> f64 {
+    pub(super) fn diffuse(&self, shell: usize, mu_s: f64) -> f64 {
         let s = place(mu_s);
         let j = (s as usize).min(ANGLES - 2);
         let t = s - j as f64;
@@ -113,7 +113,7 @@ impl Guide {
 
     /// The distribution of directions at a place, where one was learnt.
     #[inline]
-    pub fn directions(&self, shell: usize, mu_s: f64) -> Option<&[f64; BINS]> {
+    pub(super) fn directions(&self, shell: usize, mu_s: f64) -> Option<&[f64; BINS]> {
         let a = ((place(mu_s) + 0.5) as usize).min(ANGLES - 1);
         self.directions[self.band[shell] * ANGLES + a].as_ref()
     }
@@ -135,7 +135,7 @@ fn distribution(bins: &[f64; BINS]) -> Option<[f64; BINS]> {
 const BEND: f64 = 0.15;
 
 /// Cosine of the sun's zenith angle of grid line `a`: closest together at the horizon.
-pub fn sun_angle(a: usize) -> f64 {
+pub(super) fn sun_angle(a: usize) -> f64 {
     let y = (2.0 * a as f64 / (ANGLES - 1) as f64 - 1.0) / (1.0 + BEND);
     BEND * y / (1.0 - y.abs())
 }
@@ -167,7 +167,7 @@ fn horizontal(up: DVec3, sun: DVec3) -> (DVec3, DVec3) {
 }
 
 /// A direction inside a bin, from two numbers between 0 and 1.
-pub fn direction_in(bin: usize, up: DVec3, sun: DVec3, u: f64, v: f64) -> DVec3 {
+pub(super) fn direction_in(bin: usize, up: DVec3, sun: DVec3, u: f64, v: f64) -> DVec3 {
     let row = bin / AZIMUTHS;
     let mu = row_edge(row) + u * (row_edge(row + 1) - row_edge(row));
     let half = PI * ((bin % AZIMUTHS) as f64 + (2.0 * v).fract()) / AZIMUTHS as f64;
@@ -179,7 +179,7 @@ pub fn direction_in(bin: usize, up: DVec3, sun: DVec3, u: f64, v: f64) -> DVec3 
 }
 
 /// Draws a direction.
-pub fn sample(cumulative: &[f64; BINS], up: DVec3, sun: DVec3, u: f64, v: f64) -> DVec3 {
+pub(super) fn sample(cumulative: &[f64; BINS], up: DVec3, sun: DVec3, u: f64, v: f64) -> DVec3 {
     let bin = cumulative.partition_point(|&c| c <= u).min(BINS - 1);
     let low = if bin > 0 { cumulative[bin - 1] } else { 0.0 };
     let rest = ((u - low) / (cumulative[bin] - low)).clamp(0.0, 1.0);
@@ -187,7 +187,7 @@ pub fn sample(cumulative: &[f64; BINS], up: DVec3, sun: DVec3, u: f64, v: f64) -
 }
 
 /// Density of [`sample`], 1/sr.
-pub fn density(cumulative: &[f64; BINS], up: DVec3, sun: DVec3, direction: DVec3) -> f64 {
+pub(super) fn density(cumulative: &[f64; BINS], up: DVec3, sun: DVec3, direction: DVec3) -> f64 {
     let mu = direction.dot(up);
     let y = 0.5 * (mu.signum() * mu.abs().sqrt() + 1.0) * ZENITHS as f64;
     let row = (y.max(0.0) as usize).min(ZENITHS - 1);

@@ -19,7 +19,7 @@ const COPIES: (usize, usize) = (16, 4096);
 
 /// What one path found, 1/sr.
 #[derive(Clone, Copy, Default)]
-pub struct Light {
+pub(super) struct Light {
     pub total: f64,
     pub orders: [f64; ORDERS],
     /// Estimate of the light of more events than were followed.
@@ -35,7 +35,7 @@ impl Light {
         }
     }
 
-    pub fn accumulate(&mut self, other: &Light) {
+    pub(super) fn accumulate(&mut self, other: &Light) {
         self.total += other.total;
         for (a, b) in self.orders.iter_mut().zip(&other.orders) {
             *a += b;
@@ -45,7 +45,7 @@ impl Light {
 
 /// Buffers of a path, kept between paths.
 #[derive(Default)]
-pub struct Scratch {
+pub(super) struct Scratch {
     segment: Segment,
     /// Share of each constituent in the scattering at the last event in the air.
     shares: Vec<f64>,
@@ -85,7 +85,7 @@ struct Start {
 }
 
 /// Follows one path along a camera ray, up to `orders` events.
-pub fn follow(
+pub(super) fn follow(
     scene: &Scene,
     camera: &Segment,
     sun: DVec3,

@@ -2,12 +2,12 @@
 //! generator after them. Everything follows from (seed, replicate, path), so no order of work can change it.
 
 /// Samples that one scrambled Sobol sequence of `sobol_burley` has.
-pub const SEQUENCE: u64 = 1 << 16;
+pub(super) const SEQUENCE: u64 = 1 << 16;
 /// Events, of four numbers each, that the sequence covers.
 const EVENTS: usize = 12;
 
 /// The sequence's part in a path.
-pub struct Numbers {
+pub(super) struct Numbers {
     index: u32,
     scramble: u32,
 }
@@ -15,11 +15,11 @@ pub struct Numbers {
 /// Numbers that belong to no sequence; each ray of a path and of its copies has its own, so that what one
 /// ray draws does not depend on how long others live.
 #[derive(Clone, Copy)]
-pub struct Stream(u64);
+pub(super) struct Stream(u64);
 
 impl Numbers {
     /// The numbers of a path and the stream of its first ray.
-    pub fn new(seed: u64, replicate: u64, path: u64) -> (Self, Stream) {
+    pub(super) fn new(seed: u64, replicate: u64, path: u64) -> (Self, Stream) {
         let key = mix(mix(seed ^ GOLDEN).wrapping_add(replicate));
         let key = mix(key.wrapping_add(path / SEQUENCE));
         let numbers = Numbers { index: (path % SEQUENCE) as u32, scramble: (key >> 32) as u32 };
@@ -28,7 +28,7 @@ impl Numbers {
 
     /// The four numbers of an event (counted from 0), from the sequence unless they are for a copy.
     #[inline]
-    pub fn event(&self, event: usize, copy: bool, stream: &mut Stream) -> [f64; 4] {
+    pub(super) fn event(&self, event: usize, copy: bool, stream: &mut Stream) -> [f64; 4] {
         if copy || event >= EVENTS {
             return [stream.uniform(), stream.uniform(), stream.uniform(), stream.uniform()];
         }
@@ -45,13 +45,13 @@ impl Numbers {
 impl Stream {
     /// A number in (0, 1).
     #[inline]
-    pub fn uniform(&mut self) -> f64 {
+    pub(super) fn uniform(&mut self) -> f64 {
         ((self.bits() >> 12) as f64 + 0.5) / 4_503_599_627_370_496.0
     }
 
     /// A stream of its own.
     #[inline]
-    pub fn branch(&mut self) -> Stream {
+    pub(super) fn branch(&mut self) -> Stream {
         Stream(mix(self.bits() ^ GOLDEN))
     }
 

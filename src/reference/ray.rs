@@ -4,7 +4,7 @@ use super::shells::Shells;
 
 /// A stretch of a ray inside one shell. Paths are signed, from the point nearest the planet's centre.
 #[derive(Clone, Copy)]
-pub struct Cell {
+pub(super) struct Cell {
     pub shell: usize,
     pub from: f64,
     pub to: f64,
@@ -15,7 +15,7 @@ pub struct Cell {
 }
 
 #[derive(Default)]
-pub struct Ray {
+pub(super) struct Ray {
     pub cells: Vec<Cell>,
     /// Squared distance of the ray's line from the centre, m².
     pub b2: f64,
@@ -29,7 +29,7 @@ pub struct Ray {
 
 impl Ray {
     /// Fills this ray from a point inside the atmosphere (squared radius, its shell, signed path).
-    pub fn trace(&mut self, shells: &Shells, radius2: f64, shell: usize, start: f64) {
+    pub(super) fn trace(&mut self, shells: &Shells, radius2: f64, shell: usize, start: f64) {
         self.cells.clear();
         self.b2 = (radius2 - start * start).max(0.0);
         self.start = start;
@@ -69,13 +69,13 @@ impl Ray {
 
     /// Optical depth between two signed paths inside a shell, on one side of the nearest point.
     #[inline(always)]
-    pub fn cell_depth(&self, shells: &Shells, shell: usize, from: f64, to: f64) -> f64 {
+    pub(super) fn cell_depth(&self, shells: &Shells, shell: usize, from: f64, to: f64) -> f64 {
         let (a, b) = if from < 0.0 { (-to, -from) } else { (from, to) };
         shells.depth(shell, self.b2, a.max(0.0), b).max(0.0)
     }
 
     /// Cuts cells so that none is longer than `length` or deeper than `depth`.
-    pub fn subdivide(&mut self, shells: &Shells, length: f64, depth: f64) {
+    pub(super) fn subdivide(&mut self, shells: &Shells, length: f64, depth: f64) {
         const MOST: f64 = 256.0;
         let cells = std::mem::take(&mut self.cells);
         self.depth = 0.0;
@@ -94,7 +94,7 @@ impl Cell {
     /// Estimates of e^−τ across the cell, and of its mean there were τ to grow evenly: (1 + x + x²/2)^−4 with
     /// x = τ/4, within 0.1 % up to τ = 1 and too large beyond, which suits weights of sampling.
     #[inline(always)]
-    pub fn rough_transmittance(&self) -> (f64, f64) {
+    pub(super) fn rough_transmittance(&self) -> (f64, f64) {
         let x = 0.25 * self.depth;
         let root = 1.0 + x * (1.0 + 0.5 * x);
         let square = root * root;
@@ -104,7 +104,7 @@ impl Cell {
     }
 
     /// A path in the cell and its density, 1/m: e^−τ with τ growing evenly, or even where that is flat.
-    pub fn sample(&self, u: f64) -> (f64, f64) {
+    pub(super) fn sample(&self, u: f64) -> (f64, f64) {
         let length = self.to - self.from;
         if self.depth <= 1e-4 {
             return (self.from + u * length, 1.0 / length);

@@ -7,7 +7,7 @@ use super::shells::Shells;
 use crate::medium::{Medium, PhaseFunction};
 use glam::DVec3;
 
-pub struct Scene {
+pub(super) struct Scene {
     pub shells: Shells,
     pub guide: Guide,
     pub ground_radius: f64,
@@ -20,7 +20,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    pub fn new(medium: &Medium, wavelength: usize) -> Self {
+    pub(super) fn new(medium: &Medium, wavelength: usize) -> Self {
         let shells = Shells::new(medium, wavelength);
         let phases: Vec<PhaseFunction> =
             shells.scatterers.iter().map(|&i| medium.constituents[i].phase[wavelength].clone()).collect();
@@ -36,20 +36,20 @@ impl Scene {
     }
 
     /// Transmittance to the sun from a place in a shell.
-    pub fn sunlight(&self, position: DVec3, shell: usize, sun: DVec3) -> f64 {
+    pub(super) fn sunlight(&self, position: DVec3, shell: usize, sun: DVec3) -> f64 {
         let depth = self.shells.depth_to_space(position.length_squared(), shell, position.dot(sun));
         depth.map_or(0.0, |t| libm::exp(-t))
     }
 
     /// Squared radius of the ground, m².
-    pub fn ground2(&self) -> f64 {
+    pub(super) fn ground2(&self) -> f64 {
         self.shells.ground2()
     }
 }
 
 /// A ray with what sampling a place on it needs.
 #[derive(Default)]
-pub struct Segment {
+pub(super) struct Segment {
     pub origin: DVec3,
     pub direction: DVec3,
     pub ray: Ray,
@@ -65,13 +65,13 @@ const FINE_DEPTH: f64 = 0.05;
 
 impl Segment {
     /// A ray from a place in the atmosphere, with weights from the guide.
-    pub fn aim(&mut self, scene: &Scene, origin: DVec3, shell: usize, direction: DVec3, sun: DVec3) {
+    pub(super) fn aim(&mut self, scene: &Scene, origin: DVec3, shell: usize, direction: DVec3, sun: DVec3) {
         self.point(scene, origin, shell, direction, sun);
         self.weigh(scene, sun, |scene, cell, _, mu_s| scene.guide.transmittance(cell.shell, mu_s));
     }
 
     /// The same for the camera, finer and with the true sunlight in each cell's middle.
-    pub fn aim_finely(&mut self, scene: &Scene, origin: DVec3, direction: DVec3, sun: DVec3) {
+    pub(super) fn aim_finely(&mut self, scene: &Scene, origin: DVec3, direction: DVec3, sun: DVec3) {
         self.point(scene, origin, scene.shells.find(origin.length_squared()), direction, sun);
         let length = (self.ray.end - self.ray.start) * FINE_LENGTH;
         self.ray.subdivide(&scene.shells, length, FINE_DEPTH);
@@ -114,17 +114,17 @@ impl Segment {
     }
 
     #[inline]
-    pub fn place(&self, x: f64) -> DVec3 {
+    pub(super) fn place(&self, x: f64) -> DVec3 {
         self.origin + self.direction * (x - self.ray.start)
     }
 
     /// Estimate of the scattered light that reaches the ray's start, 1/sr; 0 where nothing scatters.
-    pub fn expected(&self) -> f64 {
+    pub(super) fn expected(&self) -> f64 {
         self.cumulative.last().copied().unwrap_or(0.0)
     }
 
     /// Cell, signed path and density (1/m) of a scattering place.
-    pub fn sample(&self, u: f64) -> (&Cell, f64, f64) {
+    pub(super) fn sample(&self, u: f64) -> (&Cell, f64, f64) {
         let total = self.expected();
         let at = u * total;
         let k = self.cumulative.partition_point(|&c| c <= at).min(self.cumulative.len() - 1);

@@ -19,14 +19,14 @@ const LEAST: f64 = 16.0;
 const THINNEST: f64 = 1e-7;
 
 /// Coefficients of 1, u, u², u³, where u runs from 0 to 1 across a shell, linearly in r².
-pub type Cubic = [f64; 4];
+pub(super) type Cubic = [f64; 4];
 
 #[inline(always)]
-pub fn value(c: &Cubic, u: f64) -> f64 {
+pub(super) fn value(c: &Cubic, u: f64) -> f64 {
     c[0] + u * (c[1] + u * (c[2] + u * c[3]))
 }
 
-pub struct Shells {
+pub(super) struct Shells {
     /// Squared radii of the boundaries, rising, one more than there are shells, m².
     pub edges2: Vec<f64>,
     /// 1 / (difference of the squared radii of a shell's boundaries), 1/m².
@@ -40,7 +40,7 @@ pub struct Shells {
 }
 
 impl Shells {
-    pub fn new(medium: &Medium, wavelength: usize) -> Self {
+    pub(super) fn new(medium: &Medium, wavelength: usize) -> Self {
         let scatterers: Vec<usize> = (0..medium.constituents.len())
             .filter(|&i| medium.constituents[i].scattering[wavelength] > 0.0)
             .collect();
@@ -70,32 +70,32 @@ impl Shells {
         builder.shells
     }
 
-    pub fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         self.extinction.len()
     }
 
-    pub fn ground2(&self) -> f64 {
+    pub(super) fn ground2(&self) -> f64 {
         self.edges2[0]
     }
 
-    pub fn top2(&self) -> f64 {
+    pub(super) fn top2(&self) -> f64 {
         self.edges2[self.count()]
     }
 
     /// The shell that holds a squared radius; the lowest or highest one outside the atmosphere.
-    pub fn find(&self, radius2: f64) -> usize {
+    pub(super) fn find(&self, radius2: f64) -> usize {
         self.edges2.partition_point(|&e| e <= radius2).clamp(1, self.count()) - 1
     }
 
     /// Position across a shell, 0 … 1.
     #[inline(always)]
-    pub fn across(&self, shell: usize, radius2: f64) -> f64 {
+    pub(super) fn across(&self, shell: usize, radius2: f64) -> f64 {
         (radius2 - self.edges2[shell]) * self.inverse_width[shell]
     }
 
     /// Scattering coefficient of scatterer number `i`, 1/m.
     #[inline(always)]
-    pub fn scattering(&self, shell: usize, i: usize, u: f64) -> f64 {
+    pub(super) fn scattering(&self, shell: usize, i: usize, u: f64) -> f64 {
         value(&self.scattering[shell * self.scatterers.len() + i], u).max(0.0)
     }
 
@@ -103,7 +103,7 @@ impl Shells {
     /// distance `b2` from the centre: the cubic is moved to `from`, where u grows with y = x² − from², and
     /// the powers of y are integrated over x.
     #[inline(always)]
-    pub fn depth(&self, shell: usize, b2: f64, from: f64, to: f64) -> f64 {
+    pub(super) fn depth(&self, shell: usize, b2: f64, from: f64, to: f64) -> f64 {
         let c = &self.extinction[shell];
         let w = self.inverse_width[shell];
         let u = (from * from + b2 - self.edges2[shell]) * w;
@@ -119,7 +119,7 @@ impl Shells {
 
     /// Optical depth from a point (squared radius, its shell) to the top along a ray whose signed path from
     /// the point nearest the centre is `x` there; None where the ground is in the way.
-    pub fn depth_to_space(&self, radius2: f64, shell: usize, x: f64) -> Option<f64> {
+    pub(super) fn depth_to_space(&self, radius2: f64, shell: usize, x: f64) -> Option<f64> {
         let b2 = (radius2 - x * x).max(0.0);
         let mut depth = 0.0;
         let mut k = shell;

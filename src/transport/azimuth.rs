@@ -1,7 +1,7 @@
 //! Sun positions for which a ray is integrated at once, and the sun axis of the solver's state.
 
 /// Pairs that are worked on at once.
-pub const CHUNK: usize = 16;
+pub(crate) const CHUNK: usize = 16;
 
 /// Some neighbouring pairs; the last chunk is filled up with copies of its first pair.
 #[derive(Clone, Debug)]
@@ -86,7 +86,7 @@ impl Pairs {
 }
 
 /// Azimuths (k + ½)π/n, at which a mean over n points integrates cosines up to order 2n − 1 exactly.
-pub fn midpoint_azimuths(n: usize) -> Vec<f64> {
+pub(crate) fn midpoint_azimuths(n: usize) -> Vec<f64> {
     (0..n).map(|k| libm::cos((k as f64 + 0.5) * std::f64::consts::PI / n as f64)).collect()
 }
 
@@ -164,7 +164,7 @@ impl SunAxis {
 /// The node below a place x on an axis of `count` nodes, at most count − 2, and the place 0..1 between it and
 /// the next. The integer is read from the bits of x + 2²³: a conversion would saturate, and not vectorise.
 #[inline(always)]
-pub fn node_and_place(x: f32, count: usize) -> (u32, f32) {
+pub(crate) fn node_and_place(x: f32, count: usize) -> (u32, f32) {
     const ROUND: f32 = 8_388_608.0;
     let last = (count - 2) as f32;
     let x = if x > 0.0 { x } else { 0.0 };

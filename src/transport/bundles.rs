@@ -23,7 +23,7 @@ const LONGEST_STEP: f64 = 1e-2;
 const SHARE_OF_TURN: f64 = 0.025;
 
 /// Samples of a ray as seen after one turn.
-pub struct Bundle {
+pub(super) struct Bundle {
     /// Turn and zenith cosine of the ray there; its levels are not used.
     at: Sample,
     /// First level of the state, and the one after the last.
@@ -36,13 +36,13 @@ pub struct Bundle {
 }
 
 /// The degrees of a basis, and for each of its terms the place of its degree among them.
-pub struct Degrees {
+pub(super) struct Degrees {
     pub all: Vec<usize>,
     of_term: Vec<usize>,
 }
 
 impl Degrees {
-    pub fn new(basis: &Basis) -> Self {
+    pub(super) fn new(basis: &Basis) -> Self {
         let all: Vec<usize> = basis.terms.iter().filter(|t| t.1 == 0).map(|t| t.0).collect();
         let place = |l: usize| all.iter().position(|&d| d == l).expect("a degree has an order 0");
         let of_term = basis.terms.iter().map(|t| place(t.0)).collect();
@@ -51,7 +51,7 @@ impl Degrees {
 }
 
 /// The fixed turns, up to half a circle.
-pub fn turns(is_tall: bool) -> Vec<f64> {
+pub(super) fn turns(is_tall: bool) -> Vec<f64> {
     let share = if is_tall { SHARE_OF_TURN } else { 0.0 };
     let mut turns = vec![0.0, FIRST_TURN];
     while turns[turns.len() - 1] < std::f64::consts::PI {
@@ -62,7 +62,7 @@ pub fn turns(is_tall: bool) -> Vec<f64> {
 }
 
 /// What scatters along a ray.
-pub struct Part<'a> {
+pub(super) struct Part<'a> {
     /// What a source of 1 at each sample adds to the radiance at the start.
     pub weights: &'a [Lanes],
     /// Source of a moment 1, `[level of the field][degree]`; one list where it is the same at all levels.
@@ -71,7 +71,7 @@ pub struct Part<'a> {
 
 /// How samples count between two turns.
 #[derive(Clone, Copy, PartialEq)]
-pub enum Between {
+pub(super) enum Between {
     /// Linear in the turn.
     Line,
     /// The same, but by the square of the turn before the first one that is not 0: so light that is scattered a
@@ -80,7 +80,7 @@ pub enum Between {
 }
 
 /// The bundles of a ray's samples that starts with zenith cosine `mu`.
-pub fn bundle(
+pub(super) fn bundle(
     samples: &[Sample],
     mu: f64,
     parts: &[Part],
@@ -181,7 +181,7 @@ fn polynomials(basis: &Basis, turn: f64, mu: f64) -> [f32; MOST_TERMS] {
 const TOGETHER: usize = 20;
 
 /// Number of rays, the first of a list, whose products are formed together.
-pub fn together(rays: &[Vec<Bundle>]) -> usize {
+pub(super) fn together(rays: &[Vec<Bundle>]) -> usize {
     let mut sum = 0;
     let few = |r: &&Vec<Bundle>| {
         sum += r.len();
@@ -192,7 +192,7 @@ pub fn together(rays: &[Vec<Bundle>]) -> usize {
 
 /// Sums over levels and degrees for all bundles of some rays of a level, `[bundle][order][sun node]`, of a state's
 /// moments, `[level][sun node][term]`.
-pub fn products(
+pub(super) fn products(
     rays: &[Vec<Bundle>],
     state: &[Lanes],
     suns: usize,
@@ -248,14 +248,14 @@ fn sum_products(
 
 /// Room for [`add`], kept from ray to ray.
 #[derive(Default)]
-pub struct Room {
+pub(super) struct Room {
     coarse: Vec<Lanes>,
     fine: Vec<Lanes>,
 }
 
 /// Adds to `out` (one value a pair) the light that arrives along a ray with these bundles and their products.
 #[inline(always)]
-pub fn add(
+pub(super) fn add(
     bundles: &[Bundle],
     products: &[Lanes],
     mu: f32,

@@ -42,7 +42,7 @@ pub struct ForwardPeak {
 /// Smallest share that counts as unscattered. What has sharp edges by itself, the horizon above all, is let through
 /// with the peak, an error in proportion to f; that of a peak left out goes like its square. In Cornette & Shanks'
 /// function for g = 0.76, f is 0.03 beyond degree 12 and 0.10 beyond degree 8, and both are best left in.
-pub const LEAST_SHARE: f64 = 0.125;
+pub(super) const LEAST_SHARE: f64 = 0.125;
 const NODES: usize = 512;
 /// Rates that e^(−τ a) is interpolated between, beside 0.
 const PARTS: usize = 5;
@@ -52,7 +52,7 @@ const MOST_TERMS: usize = 2000;
 
 /// Per wavelength, the share f of a constituent's scattering that counts as none where the field ends at `degree`.
 /// `orders`: how many of them are summed, none for all.
-pub fn unscattered(phases: &[PhaseFunction], degree: usize, orders: Option<usize>) -> Vec<f64> {
+pub(super) fn unscattered(phases: &[PhaseFunction], degree: usize, orders: Option<usize>) -> Vec<f64> {
     let mut out: Vec<f64> = Vec::new();
     for (w, phase) in phases.iter().enumerate() {
         let same = w > 0 && *phase == phases[w - 1];

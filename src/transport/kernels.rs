@@ -12,7 +12,7 @@ use super::rays::Sample;
 use super::refined::RefinedAxis;
 use crate::machine::lanes::Lanes;
 
-pub use single::{SingleGroup, single};
+pub(super) use single::{SingleGroup, single};
 
 /// Sources of multiply scattered light, `[level][term][sun node]`: (2l+1)/4π Σ f χ_l I_lm.
 #[derive(Clone, Debug, Default)]
@@ -24,7 +24,7 @@ pub struct Field {
 
 /// Room for the kernels' intermediate values, reused from ray to ray.
 #[derive(Default)]
-pub struct Scratch {
+pub(super) struct Scratch {
     /// `[sun node of the field][order]`
     coarse: Vec<Lanes>,
     /// `[group][fine sun node][order]`
@@ -32,7 +32,7 @@ pub struct Scratch {
 }
 
 /// Constituents that scatter a field by the same phase function.
-pub struct FieldGroup<'a> {
+pub(super) struct FieldGroup<'a> {
     pub field: &'a Field,
     pub basis: &'a Basis,
     /// What a source of 1 at each sample adds to the radiance at the start.
@@ -53,7 +53,7 @@ pub(super) fn compiled_modes(basis: &Basis) -> usize {
 
 /// Adds to `out` (`[group][pair]`) the light scattered more than once that arrives along the ray.
 #[inline(always)]
-pub fn multiple(
+pub(super) fn multiple(
     samples: &[Sample],
     mu: f32,
     groups: &[FieldGroup],
@@ -268,7 +268,7 @@ fn azimuth_factors(
 }
 
 /// The same factor for one pair: sin^m θ s^min(m,2) cos mφ.
-pub fn azimuth_factor(m: usize, x: f32, s2: f32, sine2: f32) -> f32 {
+pub(super) fn azimuth_factor(m: usize, x: f32, s2: f32, sine2: f32) -> f32 {
     let y = s2 * sine2;
     match m {
         0 => 1.0,
@@ -288,7 +288,7 @@ pub fn azimuth_factor(m: usize, x: f32, s2: f32, sine2: f32) -> f32 {
 }
 
 /// What a sample may add, as a share of the ray's largest, and still be left out: haze high up.
-pub const NEGLIGIBLE: f32 = 1e-7;
+pub(super) const NEGLIGIBLE: f32 = 1e-7;
 
 fn least_weight<'a>(weights: impl Iterator<Item = &'a [Lanes]>) -> f32 {
     NEGLIGIBLE * weights.flatten().map(|w| largest(*w)).fold(0.0, f32::max)
@@ -296,6 +296,6 @@ fn least_weight<'a>(weights: impl Iterator<Item = &'a [Lanes]>) -> f32 {
 
 /// The largest lane.
 #[inline(always)]
-pub fn largest(v: Lanes) -> f32 {
+pub(super) fn largest(v: Lanes) -> f32 {
     v.0.iter().fold(0.0, |a, &b| if b > a { b } else { a })
 }

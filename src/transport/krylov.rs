@@ -30,7 +30,7 @@ struct Direction {
 
 /// The sum of all orders that follow from `first`, until one more would change no mean radiance by more than
 /// `tolerance`.
-pub fn converge(operator: &Operator, first: State, tolerance: f64) -> (State, Report) {
+pub(super) fn converge(operator: &Operator, first: State, tolerance: f64) -> (State, Report) {
     let preconditioner = Preconditioner::new(operator);
     let mut x = first.clone();
     preconditioner.solve(&mut x);

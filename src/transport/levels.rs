@@ -80,7 +80,7 @@ fn between(level: usize, refinement: usize, count: usize) -> (usize, Vec<f32>) {
 }
 
 /// The interval of a rising list that holds `r`, and the place of `r` in it.
-pub fn locate(radii: &[f64], r: f64) -> (usize, f64) {
+pub(super) fn locate(radii: &[f64], r: f64) -> (usize, f64) {
     let after = radii.partition_point(|&x| x <= r).clamp(1, radii.len() - 1);
     let (a, b) = (radii[after - 1], radii[after]);
     (after - 1, ((r - a) / (b - a)).clamp(0.0, 1.0))
@@ -116,7 +116,7 @@ fn spacing(medium: &Medium) -> Vec<f64> {
 }
 
 /// Vertical optical depth above which air is thick.
-pub const THIN: f64 = 4.0;
+pub(super) const THIN: f64 = 4.0;
 /// Levels that thick air has besides at its upper side and over the ground, as a share of the others: there the field
 /// bends over a fraction of a unit of optical depth. Found on a layer of depth 30: without those above, its energy
 /// balance was 5 % short; without those below, light on the ground was 1.1 % off in the median, and 0.08 % with them.

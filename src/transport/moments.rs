@@ -45,8 +45,8 @@ impl Step {
 }
 
 /// Largest degree that a basis may hold, and the number of its terms.
-pub const MOST_DEGREE: usize = 12;
-pub const MOST_TERMS: usize = (MOST_DEGREE + 1) * (MOST_DEGREE + 2) / 2;
+pub(super) const MOST_DEGREE: usize = 12;
+pub(super) const MOST_TERMS: usize = (MOST_DEGREE + 1) * (MOST_DEGREE + 2) / 2;
 
 impl Basis {
     /// All orders of the given degrees.

@@ -22,7 +22,7 @@ use std::ops::Range;
 const REFINEMENT: usize = 3;
 
 /// Whether a shell from a radius to another is so tall that its rays turn far around the planet.
-pub fn is_tall(ground: f64, top: f64) -> bool {
+pub(super) fn is_tall(ground: f64, top: f64) -> bool {
     top > TALL * ground
 }
 
@@ -67,7 +67,7 @@ impl Geometry {
 }
 
 /// A batch of wavelengths ready to scatter.
-pub struct Operator<'a> {
+pub(super) struct Operator<'a> {
     pub geometry: &'a Geometry,
     pub optics: &'a Optics,
     pub sunlight: &'a Sunlight,
@@ -85,7 +85,7 @@ pub struct Operator<'a> {
 }
 
 impl<'a> Operator<'a> {
-    pub fn new(
+    pub(super) fn new(
         geometry: &'a Geometry,
         optics: &'a Optics,
         sunlight: &'a Sunlight,
@@ -184,7 +184,7 @@ impl<'a> Operator<'a> {
 
     /// The next order of scattering: moments of the light that the field of `state` and the ground lit by it
     /// send out (Elek & Kmoch Eqs. 9–12 in one step).
-    pub fn apply(&self, state: &State) -> State {
+    pub(super) fn apply(&self, state: &State) -> State {
         match &self.bundles {
             Some(bundles) => self.apply_bundles(bundles, state),
             None => self.apply_samples(state),
@@ -246,7 +246,7 @@ impl<'a> Operator<'a> {
     }
 
     /// The first order: sunlight scattered or reflected once (Eqs. 7–8).
-    pub fn first_order(&self, azimuths: usize) -> State {
+    pub(super) fn first_order(&self, azimuths: usize) -> State {
         let geometry = self.geometry;
         let pairs = Pairs::new(&geometry.axis.mu_s, &midpoint_azimuths(azimuths));
         let scattering: Vec<Vec<Lanes>> =
@@ -293,7 +293,7 @@ impl<'a> Operator<'a> {
 
 /// A row over the sun axis, interpolated linearly; 0 below its lowest node.
 #[inline(always)]
-pub fn interpolate(row: &[Lanes], axis: &SunAxis, mu_s: f32) -> Lanes {
+pub(super) fn interpolate(row: &[Lanes], axis: &SunAxis, mu_s: f32) -> Lanes {
     let (n, t) = axis.locate(mu_s);
     if t < 0.0 {
         return Lanes::ZERO;

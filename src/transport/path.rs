@@ -5,7 +5,7 @@ use super::levels::{Levels, locate};
 use crate::machine::lanes::Lanes;
 
 /// Longest arc between two samples of a ray, rad, so that the sun's height changes little between them.
-pub const LONGEST_ARC: f64 = 0.013;
+pub(super) const LONGEST_ARC: f64 = 0.013;
 
 /// One sampling point of a ray.
 #[derive(Clone, Copy, Debug)]

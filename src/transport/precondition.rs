@@ -12,7 +12,7 @@ const DEGREES: usize = 3;
 const THICK_DEGREES: usize = 5;
 
 /// LU factors of I − A of one column, sixteen wavelengths at once; the same for all sun nodes.
-pub struct Preconditioner {
+pub(super) struct Preconditioner {
     size: usize,
     levels: usize,
     /// Numbers of the terms that take part.
@@ -21,7 +21,7 @@ pub struct Preconditioner {
 }
 
 impl Preconditioner {
-    pub fn new(operator: &Operator) -> Self {
+    pub(super) fn new(operator: &Operator) -> Self {
         let basis = operator.basis;
         let thick = operator.geometry.levels.is_refined();
         let terms: Vec<usize> = basis.of_order(0).take(if thick { THICK_DEGREES } else { DEGREES }).collect();
@@ -109,7 +109,7 @@ impl Preconditioner {
     }
 
     /// Replaces the residual by the correction that it calls for.
-    pub fn solve(&self, residual: &mut State) {
+    pub(super) fn solve(&self, residual: &mut State) {
         let (size, count) = (self.size, self.terms.len());
         let stride = residual.suns * residual.terms;
         let mut x = vec![Lanes::ZERO; size];

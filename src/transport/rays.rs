@@ -6,7 +6,7 @@ use crate::machine::lanes::{Lanes, WIDTH};
 
 /// A sampling point of a ray, as the kernels see it.
 #[derive(Clone, Copy, Debug)]
-pub struct Sample {
+pub(super) struct Sample {
     /// Level below (of fields or of sunlight, as the ray was built) and place between it and the next.
     pub level: u32,
     pub place: f32,
@@ -17,7 +17,7 @@ pub struct Sample {
 
 /// Where a ray meets the ground.
 #[derive(Clone, Copy, Debug)]
-pub struct Hit {
+pub(super) struct Hit {
     pub cos_turn: f32,
     pub sin_turn: f32,
     pub transmittance: Lanes,
@@ -25,7 +25,7 @@ pub struct Hit {
 
 /// A path with its weights at the wavelengths of a batch.
 #[derive(Clone, Debug)]
-pub struct Ray {
+pub(super) struct Ray {
     pub samples: Vec<Sample>,
     /// What a source function of 1 (per unit extinction) at each sample adds to the radiance at the start.
     pub weights: Vec<Lanes>,
@@ -35,7 +35,7 @@ pub struct Ray {
 impl Ray {
     /// Samples where fields are looked up, between which the source function is linear in optical depth.
     #[inline(always)]
-    pub fn new(path: &Path, levels: &Levels, extinction: &[Lanes]) -> Self {
+    pub(super) fn new(path: &Path, levels: &Levels, extinction: &[Lanes]) -> Self {
         let mut samples: Vec<Sample> = Vec::with_capacity(path.stops.len());
         let mut weights: Vec<Lanes> = Vec::with_capacity(path.stops.len());
         let (mut transmittance, mut depth) = (Lanes::splat(1.0), Lanes::ZERO);
@@ -61,7 +61,7 @@ impl Ray {
 
 impl Hit {
     /// The last stop of a path; `transmittance` from there to the start.
-    pub fn at(path: &Path, transmittance: Lanes) -> Self {
+    pub(super) fn at(path: &Path, transmittance: Lanes) -> Self {
         let (cos, sin) = path.turn(path.stops.last().expect("a path has a stop"));
         Hit { cos_turn: cos as f32, sin_turn: sin as f32, transmittance }
     }
@@ -81,14 +81,14 @@ impl Sample {
     }
 
     /// A path's samples: all of its stops on fine levels, or those where fields are looked up on theirs.
-    pub fn all(path: &Path, levels: &Levels, field: bool) -> Vec<Self> {
+    pub(super) fn all(path: &Path, levels: &Levels, field: bool) -> Vec<Self> {
         let used = (0..path.stops.len()).filter(|&k| !field || path.samples_field(k));
         used.map(|k| Sample::at(path, levels, &path.stops[k], field)).collect()
     }
 }
 
 /// What light that is scattered towards the start loses on its way, between every two stops of a path.
-pub struct Attenuation {
+pub(super) struct Attenuation {
     /// What a unit of scattering depth in a segment adds to the radiance at the start, for a source of 1 at its
     /// near end falling to 0 at its far end, and the other way round; 0 in a vacuum.
     near: Vec<Lanes>,
@@ -99,7 +99,7 @@ pub struct Attenuation {
 
 impl Attenuation {
     #[inline(always)]
-    pub fn new(path: &Path, extinction: &[Lanes]) -> Self {
+    pub(super) fn new(path: &Path, extinction: &[Lanes]) -> Self {
         let segments = path.stops.len() - 1;
         let (mut near, mut far) = (Vec::with_capacity(segments), Vec::with_capacity(segments));
         let mut transmittance = Lanes::splat(1.0);
@@ -117,7 +117,7 @@ impl Attenuation {
     /// What a source of 1 at each stop adds to the radiance at the start, scattered by constituents of
     /// coefficients `scattering` (1/m, where the density is 1): the weights of single scattering.
     #[inline(always)]
-    pub fn weights(&self, path: &Path, scattering: &[Lanes]) -> Vec<Lanes> {
+    pub(super) fn weights(&self, path: &Path, scattering: &[Lanes]) -> Vec<Lanes> {
         let mut weights = vec![Lanes::ZERO; path.stops.len()];
         for k in 0..self.near.len() {
             let scattered = sum(path.segment(k), scattering);
@@ -130,7 +130,7 @@ impl Attenuation {
     /// The same where a field is looked up, which is linear in radius between these stops. What is
     /// scattered between two fine stops is exact, however fast its share in the extinction changes there.
     #[inline(always)]
-    pub fn field_weights(&self, path: &Path, scattering: &[Lanes]) -> Vec<Lanes> {
+    pub(super) fn field_weights(&self, path: &Path, scattering: &[Lanes]) -> Vec<Lanes> {
         let places = path.field_places();
         let mut weights = vec![Lanes::ZERO; places.last().map_or(1, |p| p.from + 2)];
         for (k, place) in places.into_iter().enumerate() {
@@ -166,7 +166,7 @@ fn inverse(v: Lanes) -> Lanes {
 /// optical depth, and its transmittance: near 1 − e^−Δ − far, far [1 − (1 + Δ) e^−Δ]/Δ, by series below 0.3
 /// where these cancel (six terms: relative error 3e-7).
 #[inline(always)]
-pub fn segment_weights(depth: Lanes) -> (Lanes, Lanes, Lanes) {
+pub(super) fn segment_weights(depth: Lanes) -> (Lanes, Lanes, Lanes) {
     let through = (depth * -1.0).exp();
     let (mut near, mut far) = (Lanes::ZERO, Lanes::ZERO);
     for i in 0..crate::machine::lanes::WIDTH {

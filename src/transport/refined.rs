@@ -86,7 +86,7 @@ impl RefinedAxis {
 
 /// Weights at place `x` of an interval of the polynomial through even nodes, from `before` ones before the
 /// interval's first to `after` ones after it.
-pub fn lagrange(before: usize, after: usize, x: f64) -> Vec<f32> {
+pub(super) fn lagrange(before: usize, after: usize, x: f64) -> Vec<f32> {
     let nodes = || (0..=before + after).map(|j| j as f64 - before as f64);
     nodes().map(|k| nodes().filter(|j| *j != k).fold(1.0, |w, j| w * (x - j) / (k - j)) as f32).collect()
 }

@@ -94,7 +94,7 @@ impl State {
 }
 
 /// (2l+1)/4π Σ f χ_l for every term at one level.
-pub fn source_factors(
+pub(super) fn source_factors(
     basis: &Basis,
     optics: &Optics,
     shares: &[Vec<Lanes>],

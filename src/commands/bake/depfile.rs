@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// Writes a rule for each planet that was read: its `bake.json`, which is written with all the rest, depends on the
 /// preset's file, the spectra and waters that it reads, the list of planets, and this program, which holds what is
 /// shipped.
-pub fn write(args: &Args, asked: &[String], planets: &[Option<String>]) -> Result<()> {
+pub(super) fn write(args: &Args, asked: &[String], planets: &[Option<String>]) -> Result<()> {
     let Some(file) = &args.depfile else { return Ok(()) };
     let mut common = Vec::new();
     for water in args.waters.iter().filter(|w| *w != "none") {
@@ -39,7 +39,7 @@ fn freshen(bake: &Path) {
 }
 
 /// Names of the planets that could be read.
-pub fn names(planets: &[Result<Planet>]) -> Vec<Option<String>> {
+pub(super) fn names(planets: &[Result<Planet>]) -> Vec<Option<String>> {
     planets.iter().map(|p| p.as_ref().ok().map(|planet| planet.name.clone())).collect()
 }
 

@@ -15,7 +15,7 @@ use std::path::Path;
 
 /// What in `folder` is not as a bake of `planet` would leave it: what it was made from, and files that are missing or
 /// changed. Empty where a bake would write the same bytes. Files that are not the bake's own do not count.
-pub fn stale(folder: &Path, planet: &Planet, settings: &Settings) -> Vec<Difference> {
+pub(super) fn stale(folder: &Path, planet: &Planet, settings: &Settings) -> Vec<Difference> {
     let manifest = match Manifest::read(folder) {
         Ok(manifest) => manifest,
         Err(_) if !folder.join(MANIFEST).exists() => return vec![difference(MANIFEST, "there is no bake")],
@@ -42,7 +42,7 @@ fn difference(place: &str, what: impl Into<String>) -> Difference {
 }
 
 /// The bake in `folder` as an outcome, if it is the one asked for.
-pub fn current(folder: &Path, planet: &Planet, settings: &Settings) -> Option<Done> {
+pub(super) fn current(folder: &Path, planet: &Planet, settings: &Settings) -> Option<Done> {
     if !stale(folder, planet, settings).is_empty() {
         return None;
     }
@@ -67,7 +67,12 @@ pub fn current(folder: &Path, planet: &Planet, settings: &Settings) -> Option<Do
 ///
 /// # Errors
 /// `Check` if a bake is stale; where a preset cannot be read, that error, or how many of several failed.
-pub fn check(args: &Args, all: &[Settings], asked: &[String], planets: Vec<Result<Planet>>) -> Result<()> {
+pub(super) fn check(
+    args: &Args,
+    all: &[Settings],
+    asked: &[String],
+    planets: Vec<Result<Planet>>,
+) -> Result<()> {
     let (mut out, mut outcomes) = (String::new(), Vec::new());
     for ((asked_name, settings), planet) in asked.iter().zip(all).zip(planets) {
         let (name, result) = match planet {

@@ -6,7 +6,7 @@ use std::thread;
 
 /// What jobs share.
 #[derive(Clone, Copy, Debug)]
-pub struct Bounds {
+pub(super) struct Bounds {
     /// Bytes that the jobs at work may need together.
     pub memory: u64,
     /// Jobs at work at most.
@@ -22,7 +22,11 @@ const STACK: usize = 8 << 20;
 ///
 /// Each job has a thread of its own outside rayon's pool, which they share: a job that waits for the pool never
 /// finds itself working on another one.
-pub fn run_all<T: Send>(needs: &[u64], bounds: Bounds, work: impl Fn(usize) -> T + Sync) -> Vec<Option<T>> {
+pub(super) fn run_all<T: Send>(
+    needs: &[u64],
+    bounds: Bounds,
+    work: impl Fn(usize) -> T + Sync,
+) -> Vec<Option<T>> {
     let gate = Gate::new(needs, bounds.memory);
     let answers: Mutex<Vec<Option<T>>> = Mutex::new(needs.iter().map(|_| None).collect());
     let drive = || {

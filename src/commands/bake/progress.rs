@@ -7,7 +7,7 @@ use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use std::time::{Duration, Instant};
 
 /// Name of a stage, wall time, processor time of the whole process meanwhile.
-pub type Stage = (String, Duration, Duration);
+pub(super) type Stage = (String, Duration, Duration);
 
 /// Where all bakes of a run show themselves.
 pub struct Progress {
@@ -65,7 +65,7 @@ impl Progress {
 }
 
 /// Number of stages of a bake: what its bar counts.
-pub fn stages(settings: &Settings) -> usize {
+pub(super) fn stages(settings: &Settings) -> usize {
     const ALWAYS: usize = 8;
     let waters = usize::from(!settings.waters.list.is_empty());
     ALWAYS + settings.layouts.len() + waters

@@ -20,7 +20,7 @@ use crate::transport::solve::Orders;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 
 /// The settings of each planet of a run: where tables are for a window, their sizes depend on the shell.
-pub fn for_planets(settings: &Settings, sized: Sized, planets: &[Result<Planet>]) -> Vec<Settings> {
+pub(super) fn for_planets(settings: &Settings, sized: Sized, planets: &[Result<Planet>]) -> Vec<Settings> {
     let of = |planet: &Result<Planet>| match planet {
         Ok(planet) => for_planet(settings, sized, planet),
         Err(_) => settings.clone(),
@@ -29,7 +29,7 @@ pub fn for_planets(settings: &Settings, sized: Sized, planets: &[Result<Planet>]
 }
 
 /// The same of one.
-pub fn for_planet(settings: &Settings, sized: Sized, planet: &Planet) -> Settings {
+pub(super) fn for_planet(settings: &Settings, sized: Sized, planet: &Planet) -> Settings {
     match settings.window != Window::WHOLE {
         true => fitted(settings, &planet.medium(&settings.wavelengths_nm), sized),
         false => settings.clone(),
@@ -38,7 +38,7 @@ pub fn for_planet(settings: &Settings, sized: Sized, planet: &Planet) -> Setting
 
 /// Settings of the least model for a planet within a tolerance: by day and wherever there is to be, or in the window
 /// that was asked for.
-pub fn planned(
+pub(super) fn planned(
     args: &Args,
     planet: &Planet,
     settings: &Settings,
@@ -64,7 +64,7 @@ pub fn planned(
 }
 
 /// What `--layout` takes.
-pub fn layouts() -> PossibleValuesParser {
+pub(super) fn layouts() -> PossibleValuesParser {
     let value = |layout: &dyn Layout| {
         let value = PossibleValue::new(layout.name());
         match layout.about() {
@@ -76,7 +76,7 @@ pub fn layouts() -> PossibleValuesParser {
 }
 
 /// The settings that hold for every preset of the run, and which sizes were asked for.
-pub fn settings(args: &Args) -> Result<(Settings, Sized)> {
+pub(super) fn settings(args: &Args) -> Result<(Settings, Sized)> {
     // In the order of the list, each once; those of the paper's medium first.
     let asked = |layout: &&'static dyn Layout| args.layout.iter().any(|name| name == layout.name());
     let mut layouts: Vec<&'static dyn Layout> = layout::ALL.into_iter().filter(asked).collect();
@@ -159,7 +159,7 @@ pub fn settings(args: &Args) -> Result<(Settings, Sized)> {
 }
 
 /// Constituents of --fold that a planet of the run has not, before anything of another is written.
-pub fn check_folded(settings: &Settings, planets: &[Result<Planet>]) -> Result<()> {
+pub(super) fn check_folded(settings: &Settings, planets: &[Result<Planet>]) -> Result<()> {
     for planet in planets.iter().flatten() {
         let medium = planet.medium(&settings.wavelengths_nm);
         settings.compact.folded.iter().try_for_each(|name| crate::bake::check_folded(&medium, name))?;

@@ -10,7 +10,7 @@ use serde_json::{Map, Value, json};
 use std::path::PathBuf;
 
 /// A finished bake.
-pub struct Done {
+pub(super) struct Done {
     pub folder: PathBuf,
     pub files: usize,
     pub bytes: usize,
@@ -24,7 +24,7 @@ pub struct Done {
 }
 
 /// What came of one preset.
-pub struct Outcome {
+pub(super) struct Outcome {
     /// Name of the planet, or what was asked for where there is no planet.
     pub name: String,
     pub result: Result<Done>,
@@ -32,7 +32,7 @@ pub struct Outcome {
 
 /// The largest error that a bake found in its own tables, and where.
 #[derive(Debug, PartialEq)]
-pub struct Worst {
+pub(super) struct Worst {
     pub error: f64,
     pub layout: String,
     pub region: String,
@@ -40,13 +40,13 @@ pub struct Worst {
 
 impl Done {
     /// Of a bake that was looked at and left.
-    pub fn nothing(folder: PathBuf) -> Self {
+    pub(super) fn nothing(folder: PathBuf) -> Self {
         let (warnings, quality, stages) = Default::default();
         Done { folder, files: 0, bytes: 0, warnings, quality, stages, need: 0, reused: true }
     }
 
     /// Largest error of the tables of all layouts against direct integration of their own medium.
-    pub fn worst(&self) -> Option<Worst> {
+    pub(super) fn worst(&self) -> Option<Worst> {
         let mut worst: Option<Worst> = None;
         let mut look = |layout: &str, region: &str, found: &Value| {
             if let Some(error) = found["max"].as_f64()
@@ -77,7 +77,7 @@ impl Done {
     }
 
     /// Error of the energy balance of the medium as it is, or else of the paper's; none where orders were counted.
-    pub fn balance(&self) -> Option<f64> {
+    pub(super) fn balance(&self) -> Option<f64> {
         let of = |key: &str| self.quality.get(key).and_then(|s| s["energy_balance_error"].as_f64());
         of("solver").or_else(|| of("paper_medium_solver"))
     }
@@ -120,7 +120,7 @@ impl Outcome {
 
 /// Prints what came of all presets, in their order: a line of JSON each, or else the lines of one bake or the table
 /// of several, with the times of their stages if wanted.
-pub fn tell(outcomes: &[Outcome], as_json: bool, perf: bool) -> Result<()> {
+pub(super) fn tell(outcomes: &[Outcome], as_json: bool, perf: bool) -> Result<()> {
     if as_json {
         return print(&outcomes.iter().map(|o| format!("{}\n", o.json())).collect::<String>());
     }
@@ -220,7 +220,7 @@ fn percent(share: f64) -> String {
 
 /// The failure of a run: its own where one preset was asked for, else how many failed, with the highest exit code
 /// among them.
-pub fn failure(outcomes: Vec<Outcome>) -> Result<()> {
+pub(super) fn failure(outcomes: Vec<Outcome>) -> Result<()> {
     let of = outcomes.len();
     let mut errors: Vec<Error> = outcomes.into_iter().filter_map(|o| o.result.err()).collect();
     match (errors.len(), of) {

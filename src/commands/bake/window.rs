@@ -9,7 +9,7 @@ use crate::medium::Medium;
 use crate::preset::{Metric, Tolerance};
 
 /// `2m`, `0..200m`, `300m..12km`: metres; the first number has the unit of the last where it has none.
-pub fn altitudes(text: &str) -> Result<[f64; 2], String> {
+pub(crate) fn altitudes(text: &str) -> Result<[f64; 2], String> {
     let form = || "expected a height or a range of heights, e.g. 2m, 0..12km".to_string();
     let (first, last) = text.split_once("..").unwrap_or((text, text));
     let split = |t: &str| -> Option<(f64, Option<f64>)> {
@@ -33,7 +33,7 @@ pub fn altitudes(text: &str) -> Result<[f64; 2], String> {
 }
 
 /// `35`, `-6..60`: degrees.
-pub fn suns(text: &str) -> Result<[f64; 2], String> {
+pub(crate) fn suns(text: &str) -> Result<[f64; 2], String> {
     let (first, last) = text.split_once("..").unwrap_or((text, text));
     let number = |t: &str| {
         t.trim()
@@ -48,7 +48,7 @@ pub fn suns(text: &str) -> Result<[f64; 2], String> {
 }
 
 /// `1%`, `1dE`: what 95 % of views keep within.
-pub fn tolerance(text: &str) -> Result<Tolerance, String> {
+pub(crate) fn tolerance(text: &str) -> Result<Tolerance, String> {
     let form = || "expected an error of RGB in per cent or one in ΔE2000, e.g. 1% or 1dE".to_string();
     let number = |t: &str| t.trim().parse::<f64>().ok().filter(|v| (1e-9..=1000.0).contains(v));
     let (metric, most) = if let Some(t) = text.strip_suffix('%') {
@@ -66,7 +66,7 @@ fn rising(ends: [f64; 2]) -> Result<[f64; 2], String> {
 
 /// Which tables have a size that was asked for, and keep it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Sized {
+pub(crate) struct Sized {
     pub elek2010: bool,
     pub multiple: bool,
     pub single: bool,
@@ -74,7 +74,7 @@ pub struct Sized {
 }
 
 /// Settings whose tables are as close in the window as they are without one; sizes that were asked for stay.
-pub fn fitted(settings: &Settings, medium: &Medium, given: Sized) -> Settings {
+pub(crate) fn fitted(settings: &Settings, medium: &Medium, given: Sized) -> Settings {
     let (mut out, window) = (settings.clone(), &settings.window);
     let fit = |mapping: Option<Elek2010>, size: &mut [usize]| {
         let Some(mapping) = mapping else { return };

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 const DARK: f64 = 1e-4;
 
 /// Every table of either bake, in the order of the first, what only the second has last.
-pub fn compare(a: &Bake, b: &Bake) -> Result<Vec<TableDifference>> {
+pub(super) fn compare(a: &Bake, b: &Bake) -> Result<Vec<TableDifference>> {
     let name = |t: &Table| format!("{}/{}", t.layout, t.name);
     let of = |bake: &Bake, wanted: &str| bake.manifest.tables.iter().find(|t| name(t) == wanted).cloned();
     let only = |which: &str| Texels::Apart(format!("is in {which} only"));

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// The whole answer; `holds`: nothing lies beyond a tolerance.
-pub fn told(args: &Args, found: &Found, holds: bool) -> String {
+pub(super) fn told(args: &Args, found: &Found, holds: bool) -> String {
     if args.json { format!("{:#}\n", as_json(args, found, holds)) } else { as_text(args, found) }
 }
 
@@ -100,7 +100,7 @@ fn views(found: &Found) -> String {
 }
 
 /// A share in per cent to three digits.
-pub fn percent(share: f64) -> String {
+pub(super) fn percent(share: f64) -> String {
     match 100.0 * share {
         0.0 => "0 %".into(),
         p if p < 0.001 => format!("{p:.0e} %"),

@@ -11,7 +11,7 @@ use crate::spectrum::{delta_e_2000_scaled, invert, multiply};
 use rayon::prelude::*;
 
 /// Every layout that both bakes have and that this tool can answer from, region by region.
-pub fn compare(a: &Bake, b: &Bake, count: usize) -> Result<Vec<ViewDifference>> {
+pub(super) fn compare(a: &Bake, b: &Bake, count: usize) -> Result<Vec<ViewDifference>> {
     let mut out = Vec::new();
     for layout in layout::ALL.map(|layout| layout.name()) {
         let has = |bake: &Bake| bake.manifest.tables.iter().any(|t| t.layout == layout);
@@ -26,7 +26,7 @@ pub fn compare(a: &Bake, b: &Bake, count: usize) -> Result<Vec<ViewDifference>> 
 }
 
 /// |b − a| over the larger of the two, and over `floor` at least: 0 to 1 for values of one sign.
-pub fn difference(a: f64, b: f64, floor: f64) -> f64 {
+pub(super) fn difference(a: f64, b: f64, floor: f64) -> f64 {
     let size = a.abs().max(b.abs()).max(floor);
     if a == b || size == 0.0 { 0.0 } else { (b - a).abs() / size }
 }

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use ddsfile::{AlphaMode, Caps2, D3D10ResourceDimension, Dds, DxgiFormat, NewDxgiParams};
 
 /// The bytes of the file; `name` is for messages.
-pub fn file(volume: &Volume, name: &str) -> Result<Vec<u8>> {
+pub(super) fn file(volume: &Volume, name: &str) -> Result<Vec<u8>> {
     let refuse = |e: ddsfile::Error| Error::Argument(format!("{name}: DDS: {e}"));
     let Volume { width, height, depth, .. } = *volume;
     let flat = depth.is_none();

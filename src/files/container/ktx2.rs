@@ -10,7 +10,7 @@ use ktx2::{Format, Header, Index, LevelIndex};
 const ALIGNMENT: usize = 8;
 
 /// The bytes of the file; `name` is for messages.
-pub fn file(volume: &Volume, name: &str) -> Result<Vec<u8>> {
+pub(super) fn file(volume: &Volume, name: &str) -> Result<Vec<u8>> {
     let format = Format::R16G16B16A16_SFLOAT;
     let refuse = |e: ktx2::dfd::BuildError| Error::Argument(format!("{name}: KTX2: {e:?}"));
     let (mut basic, type_size) = Basic::from_format(format).map_err(refuse)?;

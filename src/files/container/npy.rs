@@ -9,7 +9,7 @@ const MAGIC: [u8; 8] = *b"\x93NUMPY\x01\x00";
 
 /// The bytes of the file: an array in C order, its first index that of the table's last axis, its last that of the
 /// channel. `shape` is that of the table, fastest first.
-pub fn file(channels: &[&[f16]], shape: &[usize]) -> Result<Vec<u8>> {
+pub(super) fn file(channels: &[&[f16]], shape: &[usize]) -> Result<Vec<u8>> {
     let texels = channels.first().map_or(0, |c| c.len());
     if shape.iter().product::<usize>() != texels {
         return Err(Error::Argument(format!("NPY: {texels} texels are not a table of shape {shape:?}")));

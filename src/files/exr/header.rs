@@ -11,17 +11,17 @@ use exr::meta::header::{Header, LayerAttributes};
 use exr::prelude::{Compression, Vec2};
 
 /// The attributes that tell how slices lie in the picture, in the order of [`packing`].
-pub const PACKING: [&str; 5] = ["sliceWidth", "sliceHeight", "slices", "columns", "rows"];
+pub(super) const PACKING: [&str; 5] = ["sliceWidth", "sliceHeight", "slices", "columns", "rows"];
 
 /// The attribute of a picture that is upside down, and what it says.
-pub const ORIGIN: (&str, &str) = ("origin", "bottom-left");
+pub(super) const ORIGIN: (&str, &str) = ("origin", "bottom-left");
 
 fn packing(atlas: &Atlas) -> [usize; 5] {
     [atlas.width, atlas.height, atlas.slices, atlas.columns, atlas.rows()]
 }
 
 /// The header of the file that holds `atlas`, whose sizes have been checked to fit 30 bits.
-pub fn header(atlas: &Atlas) -> Header {
+pub(super) fn header(atlas: &Atlas) -> Header {
     let channels = atlas.sorted_channels().into_iter().map(description).collect();
     let tiles = TileDescription {
         tile_size: Vec2(atlas.width, atlas.height),
@@ -63,7 +63,7 @@ fn encode(value: &Attribute) -> AttributeValue {
 }
 
 /// The attribute that `value` is; `None` for a type that atlases do not use, or text that is not UTF-8.
-pub fn decode(value: &AttributeValue) -> Option<Attribute> {
+pub(super) fn decode(value: &AttributeValue) -> Option<Attribute> {
     match value {
         AttributeValue::Text(text) => decode_text(text).map(Attribute::Text),
         AttributeValue::I32(v) => Some(Attribute::Int(*v)),
@@ -73,6 +73,6 @@ pub fn decode(value: &AttributeValue) -> Option<Attribute> {
 }
 
 /// `None` if it is not UTF-8.
-pub fn decode_text(text: &Text) -> Option<String> {
+pub(super) fn decode_text(text: &Text) -> Option<String> {
     String::from_utf8(text.as_slice().to_vec()).ok()
 }

@@ -7,7 +7,7 @@ const PREAMBLE: usize = 8;
 
 /// `file`, a single-part EXR file, with the attributes of its header ordered by name. They keep their bytes
 /// and the header its length, so that the table of tile offsets stays valid.
-pub fn by_name(mut file: Vec<u8>) -> Vec<u8> {
+pub(super) fn by_name(mut file: Vec<u8>) -> Vec<u8> {
     let mut places = Vec::new();
     let mut at = PREAMBLE;
     while file[at] != 0 {

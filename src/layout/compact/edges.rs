@@ -18,7 +18,7 @@ enum Gap {
 }
 
 /// A ray: its altitude, cosine, and whether it hits the ground.
-pub type Ray = (f64, (f64, bool));
+pub(super) type Ray = (f64, (f64, bool));
 
 /// The neighbours that are looked at: along the altitude, and at the top, from where observers outside look in, along the
 /// view instead, where rays come back into the air. There the altitude is always the last.
@@ -67,7 +67,7 @@ type Texels = Vec<[f32; 4]>;
 
 /// Bridges the edges in `texels`, `[ray][group][pair]`, in the channels that `four` names first. `find` finds the texels of
 /// a ray.
-pub fn bridge(
+pub(super) fn bridge(
     texels: &mut [[f32; 4]],
     mapping: &Elek2010,
     [groups, pairs]: [usize; 2],

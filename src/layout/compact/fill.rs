@@ -11,14 +11,14 @@ use rayon::prelude::*;
 
 /// What a mean source is the mean over: the opacity of the ray, or that without what only absorbs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Over {
+pub(super) enum Over {
     All,
     Scatterers,
 }
 
 /// Mean sources at the four wavelengths, `[group][ray order]`; light scattered more than once counts for the first
 /// group, and so does that which the last `folded` groups scatter once, if both are wanted.
-pub fn fill(
+pub(super) fn fill(
     solution: &Solution,
     palette: &Palette,
     mapping: &Elek2010,

@@ -21,7 +21,7 @@ const POWER: f64 = 0.7;
 
 /// The bends of thin air as they are. Thick air has a layer of finer altitudes in the upper side of its cloud, and the rest
 /// are spread more by height, the thicker the more.
-pub fn bent(bends: Bends, medium: &Medium) -> Bends {
+pub(super) fn bent(bends: Bends, medium: &Medium) -> Bends {
     let depth = depth_above(medium);
     let whole = depth(0.0);
     if !(whole > THIN && whole.is_finite()) {
@@ -45,7 +45,7 @@ pub fn bent(bends: Bends, medium: &Medium) -> Bends {
 /// The bends of thick air with another altitude bend, so that the nearest of `size` altitudes of a window lies where the
 /// extinction jumps most, mostly the base of a cloud: light has a kink there, which no pair of texels may straddle. Where
 /// nothing jumps, or no bend does it, as they are.
-pub fn with_texel_at_edge(bends: Bends, medium: &Medium, size: usize, window: &Window) -> Bends {
+pub(super) fn with_texel_at_edge(bends: Bends, medium: &Medium, size: usize, window: &Window) -> Bends {
     if bends.layer == Layer::NONE || size < 3 {
         return bends;
     }

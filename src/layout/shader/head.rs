@@ -27,7 +27,7 @@ vectors.csv holds what they answer. Texture units weigh texels in steps, on most
 shader does it.";
 
 /// All that stands before the code.
-pub fn comment(manifest: &Manifest, layout: &str, tables: &[Bound], language: Language) -> String {
+pub(super) fn comment(manifest: &Manifest, layout: &str, tables: &[Bound], language: Language) -> String {
     let how = match language {
         Language::Wgsl => WGSL,
         Language::Glsl => GLSL,

@@ -2,7 +2,7 @@
 
 /// What a token is; its text is beside it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub(super) enum Kind {
     Space,
     Comment,
     Word,
@@ -10,10 +10,10 @@ pub enum Kind {
     Sign,
 }
 
-pub type Token<'a> = (Kind, &'a str);
+pub(super) type Token<'a> = (Kind, &'a str);
 
 /// All tokens of a text, which they are one after the other.
-pub fn tokens(text: &str) -> Vec<Token<'_>> {
+pub(super) fn tokens(text: &str) -> Vec<Token<'_>> {
     let mut out = Vec::new();
     let mut rest = text;
     while let Some(first) = rest.chars().next() {
@@ -46,7 +46,7 @@ fn number(text: &str) -> usize {
 }
 
 /// Index of the bracket that closes the one at `open`; none where none does.
-pub fn closing(tokens: &[Token], open: usize) -> Option<usize> {
+pub(super) fn closing(tokens: &[Token], open: usize) -> Option<usize> {
     let (begin, end) = match tokens[open].1 {
         "(" => ("(", ")"),
         "<" => ("<", ">"),
@@ -63,13 +63,13 @@ pub fn closing(tokens: &[Token], open: usize) -> Option<usize> {
 }
 
 /// Index of the first token from `at` on that is neither space nor comment.
-pub fn next(tokens: &[Token], at: usize) -> usize {
+pub(super) fn next(tokens: &[Token], at: usize) -> usize {
     let rest = tokens.iter().skip(at);
     at + rest.take_while(|t| matches!(t.0, Kind::Space | Kind::Comment)).count()
 }
 
 /// The parts between commas that stand in no bracket.
-pub fn split<'t, 'a>(tokens: &'t [Token<'a>]) -> Vec<&'t [Token<'a>]> {
+pub(super) fn split<'t, 'a>(tokens: &'t [Token<'a>]) -> Vec<&'t [Token<'a>]> {
     let (mut out, mut from, mut at) = (Vec::new(), 0, 0);
     while at < tokens.len() {
         match tokens[at].1 {
@@ -89,7 +89,7 @@ pub fn split<'t, 'a>(tokens: &'t [Token<'a>]) -> Vec<&'t [Token<'a>]> {
 }
 
 /// Tokens as they were.
-pub fn text(tokens: &[Token]) -> String {
+pub(super) fn text(tokens: &[Token]) -> String {
     tokens.iter().map(|t| t.1).collect()
 }
 

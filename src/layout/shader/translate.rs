@@ -35,7 +35,7 @@ int3 texture_size(Texture3D<float4> image) {
 ";
 
 /// A text of the look-ups in a language. Errors: WGSL that this does not know, with its words.
-pub fn translate(wgsl: &str, language: Language) -> Result<String, String> {
+pub(super) fn translate(wgsl: &str, language: Language) -> Result<String, String> {
     match language {
         Language::Wgsl => Ok(wgsl.to_string()),
         Language::Glsl => Ok(format!("{GLSL}\n{}", Writer(language).all(&tokens(wgsl))?)),

@@ -110,14 +110,14 @@ fn layer(constant: impl Fn(&str) -> Option<f64>) -> Layer {
 }
 
 /// A table over altitude, view, sun and azimuth.
-pub struct Volume {
+pub(crate) struct Volume {
     texels: Texels,
     mapping: Elek2010,
 }
 
 /// A view inside the shell in the coordinates of the mapping.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub(crate) struct Place {
     pub altitude: f64,
     pub mu: f64,
     pub mu_s: f64,
@@ -126,25 +126,25 @@ pub struct Place {
 }
 
 impl Place {
-    pub fn cos_azimuth(&self) -> f64 {
+    pub(crate) fn cos_azimuth(&self) -> f64 {
         let sines = ((1.0 - self.mu * self.mu) * (1.0 - self.mu_s * self.mu_s)).max(0.0).sqrt();
         if sines > 0.0 { ((self.nu - self.mu * self.mu_s) / sines).clamp(-1.0, 1.0) } else { 1.0 }
     }
 }
 
 impl Volume {
-    pub fn new(table: &Table, atlas: &Atlas) -> Result<Self, String> {
+    pub(crate) fn new(table: &Table, atlas: &Atlas) -> Result<Self, String> {
         let size: [usize; 4] =
             table.shape.clone().try_into().map_err(|_| format!("{}: not four axes", table.file))?;
         Ok(Volume { texels: Texels::new(table, atlas)?, mapping: mapping(table, size)? })
     }
 
-    pub fn mapping(&self) -> &Elek2010 {
+    pub(crate) fn mapping(&self) -> &Elek2010 {
         &self.mapping
     }
 
     /// Decoded values at a place; none below the sun axis, where it is dark.
-    pub fn at(&self, p: &Place) -> Option<[f64; 4]> {
+    pub(crate) fn at(&self, p: &Place) -> Option<[f64; 4]> {
         let place = self.mapping.locate(p.altitude, p.mu, p.mu_s, p.cos_azimuth(), p.hits_ground)?;
         let [x, y, z, _] = self.mapping.size();
         Some(self.texels.decode(self.texels.interpolate(&place, &[1, x, x * y, x * y * z])))
@@ -152,7 +152,7 @@ impl Volume {
 }
 
 /// A table over one or two axes.
-pub struct Plane {
+pub(crate) struct Plane {
     texels: Texels,
     size: [usize; 2],
     mapping: Option<Elek2010>,
@@ -161,7 +161,7 @@ pub struct Plane {
 }
 
 impl Plane {
-    pub fn new(table: &Table, atlas: &Atlas) -> Result<Self, String> {
+    pub(crate) fn new(table: &Table, atlas: &Atlas) -> Result<Self, String> {
         let size = [table.shape.first().copied().unwrap_or(1), table.shape.get(1).copied().unwrap_or(1)];
         let names: Vec<&str> = table.axes.iter().map(|a| a.name.as_str()).collect();
         let mapping = match names[..] {
@@ -173,13 +173,13 @@ impl Plane {
     }
 
     /// Decoded values at a row (taken as it is) and a place 0..1 along x.
-    pub fn at(&self, x: f64, row: usize) -> [f64; 4] {
+    pub(crate) fn at(&self, x: f64, row: usize) -> [f64; 4] {
         let place = [texel(x, self.size[0]), (row.min(self.size[1] - 1), 0.0)];
         self.texels.decode(self.texels.interpolate(&place, &[1, self.size[0]]))
     }
 
     /// Optical depths of a ray, of a table over altitude and view.
-    pub fn depth(&self, altitude: f64, mu: f64, hits_ground: bool) -> [f64; 4] {
+    pub(crate) fn depth(&self, altitude: f64, mu: f64, hits_ground: bool) -> [f64; 4] {
         let Some(mapping) = &self.mapping else { return [0.0; 4] };
         let x = mapping.altitude_texel(altitude);
         let y = mapping.view_texel(altitude, mu, hits_ground);
@@ -188,7 +188,7 @@ impl Plane {
     }
 
     /// Transmittance towards a sun of zenith cosine `mu_s`; 0 behind the planet.
-    pub fn sunlight(&self, altitude: f64, mu_s: f64) -> [f64; 4] {
+    pub(crate) fn sunlight(&self, altitude: f64, mu_s: f64) -> [f64; 4] {
         match &self.mapping {
             Some(mapping) if mapping.hits_ground(altitude, mu_s) => [0.0; 4],
             _ => self.depth(altitude, mu_s, false).map(|d| libm::exp(-d)),
@@ -197,7 +197,7 @@ impl Plane {
 }
 
 /// The point of view as a place inside the shell of `mapping`; none where the ray misses the atmosphere.
-pub fn enter(point: &crate::geometry::Point, mapping: &Elek2010) -> Option<Place> {
+pub(crate) fn enter(point: &crate::geometry::Point, mapping: &Elek2010) -> Option<Place> {
     let [ground, top] = mapping.radii();
     let nu = point.nu().clamp(-1.0, 1.0);
     let height = top - ground;
@@ -218,7 +218,10 @@ pub fn enter(point: &crate::geometry::Point, mapping: &Elek2010) -> Option<Place
 
 /// What of a view is beyond the tables of a window, as key, value and reason; none where nothing is, or where the ray
 /// misses the air. Angles and altitudes may be rounded as a CSV file has them.
-pub fn outside(point: &crate::geometry::Point, mapping: &Elek2010) -> Option<(&'static str, f64, String)> {
+pub(crate) fn outside(
+    point: &crate::geometry::Point,
+    mapping: &Elek2010,
+) -> Option<(&'static str, f64, String)> {
     const ROUNDED: f64 = 1e-4;
     let place = enter(point, mapping)?;
     let [ground, top] = mapping.radii();
@@ -244,7 +247,7 @@ pub fn outside(point: &crate::geometry::Point, mapping: &Elek2010) -> Option<(&'
 }
 
 /// Cosine of the sun's zenith angle where a ray meets the ground.
-pub fn sun_at_ground(place: &Place, mapping: &Elek2010) -> f64 {
+pub(crate) fn sun_at_ground(place: &Place, mapping: &Elek2010) -> f64 {
     let [ground, _] = mapping.radii();
     let r = ground + place.altitude;
     let length = mapping.distance(place.altitude, place.mu, true);

@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 /// RGB of a ray's light, cd/m², under one sun.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Light {
+pub(super) struct Light {
     /// Scattered once by gas.
     pub gas: [f32; 3],
     /// Scattered once by aerosols.
@@ -24,7 +24,12 @@ pub struct Light {
 }
 
 /// Light of every texel, `[altitude][view][nu][sun]`.
-pub fn scattering(medium: &Medium, solution: &Solution, palette: &Palette, mapping: &Bruneton) -> Vec<Light> {
+pub(super) fn scattering(
+    medium: &Medium,
+    solution: &Solution,
+    palette: &Palette,
+    mapping: &Bruneton,
+) -> Vec<Light> {
     let [altitudes, views, suns, angles] = mapping.size();
     let mut texels = vec![Light::default(); altitudes * views * angles * suns];
     let each = angles * suns;
@@ -118,19 +123,19 @@ impl Colours {
 }
 
 /// Texels of the irradiance table (its reader's): sun, altitude.
-pub const IRRADIANCE_SIZE: [usize; 2] = [64, 16];
+pub(super) const IRRADIANCE_SIZE: [usize; 2] = [64, 16];
 /// Directions of the sky over which its light is summed: heights above the horizontal, and azimuths.
 const HEIGHTS: usize = 16;
 const AZIMUTHS: usize = 24;
 
 /// Zenith cosine of the sun at texel `k` of the irradiance table.
-pub fn irradiance_mu_s(k: usize) -> f64 {
+pub(super) fn irradiance_mu_s(k: usize) -> f64 {
     2.0 * k as f64 / (IRRADIANCE_SIZE[0] - 1) as f64 - 1.0
 }
 
 /// Irradiance of a level surface by the sky alone, RGB in lx, `[altitude][sun]`; heights are even from the ground to
 /// the top, where there is none.
-pub fn irradiance(solution: &Solution, palette: &Palette, medium: &Medium) -> Vec<[f64; 3]> {
+pub(super) fn irradiance(solution: &Solution, palette: &Palette, medium: &Medium) -> Vec<[f64; 3]> {
     let [suns, altitudes] = IRRADIANCE_SIZE;
     let mu_s: Vec<f64> = (0..suns).map(irradiance_mu_s).collect();
     let pairs = SunPairs::new(&mu_s, &crate::transport::azimuth::midpoint_azimuths(AZIMUTHS));

@@ -11,7 +11,7 @@ use crate::spectrum::{multiply, weighted};
 use serde_json::{Value, json};
 
 /// Spectra as the package sees them: weighted by the star's light for each component of RGB.
-pub struct Colours {
+pub(super) struct Colours {
     weights: Vec<[f64; 3]>,
     /// What the weights make of a spectrum of 1.
     one: [f64; 3],
@@ -21,7 +21,7 @@ pub struct Colours {
 }
 
 impl Colours {
-    pub fn new(medium: &Medium, palette: &Palette) -> Self {
+    pub(super) fn new(medium: &Medium, palette: &Palette) -> Self {
         let weights = palette.rgb_weights();
         let one = weighted(&weights, &vec![1.0; weights.len()]);
         let star_lx = multiply(&palette.rgb.from_xyz, palette.star_xyz);
@@ -38,7 +38,7 @@ impl Colours {
 
 /// The text of the file. Coefficients are those at the ground, weighted by the star's light as each component of RGB
 /// sees it: the package uses their ratios alone, and only without `single_mie_scattering.exr`.
-pub fn text(
+pub(super) fn text(
     planet: &Planet,
     medium: &Medium,
     palette: &Palette,

@@ -6,12 +6,12 @@ use crate::medium::{Medium, PhaseFunction, Role};
 use std::f64::consts::PI;
 
 /// The package's Rayleigh phase function, 1/sr.
-pub fn rayleigh(nu: f64) -> f64 {
+pub(super) fn rayleigh(nu: f64) -> f64 {
     PhaseFunction::Rayleigh { king_factor: 1.0 }.value(nu)
 }
 
 /// The package's phase function of aerosols, 1/sr (Cornette & Shanks 1992).
-pub fn cornette_shanks(g: f64, nu: f64) -> f64 {
+pub(super) fn cornette_shanks(g: f64, nu: f64) -> f64 {
     PhaseFunction::CornetteShanks { g }.value(nu)
 }
 
@@ -22,7 +22,7 @@ const STEP: f64 = 0.01;
 /// The g for which aerosol light, divided by p_M at the nodes of ν, interpolated and multiplied again, is nearest to
 /// the aerosols' mean phase function: least squares of its relative error, even over the scattering angle. 0 without
 /// aerosols. Where they are of Cornette & Shanks with one g, that g (to 0.01).
-pub fn best_g(medium: &Medium, palette: &Palette, mapping: &Bruneton) -> f64 {
+pub(super) fn best_g(medium: &Medium, palette: &Palette, mapping: &Bruneton) -> f64 {
     let mean = |nu: f64| mean_phase(medium, palette, nu);
     if mean(0.0) <= 0.0 {
         return 0.0;

@@ -11,7 +11,7 @@ use crate::transport::solve::Solution;
 use rayon::prelude::*;
 
 /// Texels of the transmittance table (its reader's): view, altitude.
-pub const TRANSMITTANCE_SIZE: [usize; 2] = [256, 64];
+pub(super) const TRANSMITTANCE_SIZE: [usize; 2] = [256, 64];
 /// The least transmittance that is stored, the smallest half: shaders divide two of them.
 const LEAST: f64 = 5.960464477539063e-8;
 /// No component is stored below this share of the largest. Through much air red alone is left, and green and blue are
@@ -40,7 +40,7 @@ fn texel(light: &Light, (gas, aerosol): (f64, f64)) -> [[f64; 3]; 3] {
 
 /// What values in cd/m² are multiplied with to be stored: over the package's unit, times the power of two that brings
 /// the brightest below the largest half.
-pub fn scale(light: &[Light], sky: &[[f64; 3]], mapping: &Bruneton, g: f64) -> f64 {
+pub(super) fn scale(light: &[Light], sky: &[[f64; 3]], mapping: &Bruneton, g: f64) -> f64 {
     let brightest = light
         .par_iter()
         .enumerate()
@@ -51,7 +51,7 @@ pub fn scale(light: &[Light], sky: &[[f64; 3]], mapping: &Bruneton, g: f64) -> f
 }
 
 /// All tables, and the number of their colours that were outside the gamut.
-pub fn all(
+pub(super) fn all(
     solution: &Solution,
     palette: &Palette,
     mapping: &Bruneton,

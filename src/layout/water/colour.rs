@@ -56,7 +56,7 @@ pub fn spectra(
 
 /// Linear RGB (rows) from the four wavelengths of the bake, cd/m² sr, and ΔE2000 on held-out light: of the sky's own
 /// weights and of these. The water's, because the weights of a sky are no good for spectra that end at 600 nm.
-pub fn fit(
+pub(crate) fn fit(
     planet: &Planet,
     water: &Water,
     medium: &Medium,

@@ -25,7 +25,7 @@ pub const TRANSMITTED: usize = 3;
 /// The largest half that a scaled channel may reach.
 const BRIGHTEST: f64 = 32768.0;
 
-pub fn tables(
+pub(crate) fn tables(
     waters: &[Water],
     medium: &Medium,
     solution: &Solution,
@@ -35,7 +35,7 @@ pub fn tables(
     vec![light(medium, solution, palette, split), surfaces(waters, palette)]
 }
 
-pub fn listed(name: &str, size: usize, formula: String) -> Axis {
+pub(crate) fn listed(name: &str, size: usize, formula: String) -> Axis {
     Axis { name: name.into(), size, formula, constants: Default::default(), unit: "1".into() }
 }
 
@@ -94,13 +94,13 @@ fn surfaces(waters: &[Water], palette: &Palette) -> Baked {
 }
 
 /// R, G, B, A for up to four wavelengths.
-pub fn channels_of(nm: &[f64], quantity: &str, unit: &str) -> Vec<Channel> {
+pub(crate) fn channels_of(nm: &[f64], quantity: &str, unit: &str) -> Vec<Channel> {
     let channel = |(name, nm): (&str, &f64)| Channel::new(name, format!("{quantity}, at {nm} nm"), unit);
     ["R", "G", "B", "A"].into_iter().zip(nm).map(channel).collect()
 }
 
 /// A table of up to three axes; each channel has the power of two of its own that suits halves.
-pub fn baked(
+pub(crate) fn baked(
     layout: &str,
     name: String,
     axes: Vec<Axis>,

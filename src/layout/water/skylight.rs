@@ -19,7 +19,7 @@ pub struct Skylight {
 const TYPICAL: f64 = 1.34;
 
 /// Rings and azimuths of a half turn for tables, and where the whole sky is taken for the truth.
-pub const COARSE: [usize; 2] = [8, 8];
+pub(super) const COARSE: [usize; 2] = [8, 8];
 pub const FINE: [usize; 2] = [14, 14];
 
 impl Skylight {

@@ -12,7 +12,7 @@ use crate::transport::slab::{Angles, Dome, Layer, Slab, WaterOrders};
 use rayon::prelude::*;
 
 /// Texels of depth, view, sun and observer.
-pub const SIZE: [usize; 4] = [24, 64, 16, 9];
+pub(super) const SIZE: [usize; 4] = [24, 64, 16, 9];
 
 /// The view axis under water: cosine of the zenith angle of the direction looked into, −1 straight down.
 pub(super) const VIEW: EvenCosine = EvenCosine { name: "view", least: -1.0 };

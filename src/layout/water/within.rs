@@ -21,7 +21,7 @@ const LEAST_SUN: f64 = 0.05;
 const SEED: u32 = 3;
 
 /// Light on the water and the water itself, at the four wavelengths of the tables.
-pub struct Judge<'a> {
+pub(super) struct Judge<'a> {
     pub medium: &'a Medium,
     pub solution: &'a Solution,
     pub palette: &'a Palette,
@@ -35,7 +35,7 @@ type Place = (WaterView, f64);
 impl Judge<'_> {
     /// Errors of the underwater tables against the slab solver, relative, and where they are largest; none without those
     /// tables.
-    pub fn report(
+    pub(super) fn report(
         &self,
         water: &Water,
         media: &WaterMedium,

@@ -23,7 +23,7 @@ const SECOND: Names = Names {
 };
 
 /// Bytes that the groups of this process leave it, the least of all; none where no group has a bound.
-pub fn left() -> Option<u64> {
+pub(super) fn left() -> Option<u64> {
     of(&read("/proc/self/cgroup")?, &read("/proc/self/mountinfo")?)
 }
 

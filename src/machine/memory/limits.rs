@@ -4,7 +4,7 @@ use super::read;
 
 /// Bytes of address space and data that this process may still take, the less of the two; none without a limit, or
 /// where the system does not say.
-pub fn left() -> Option<u64> {
+pub(super) fn left() -> Option<u64> {
     of(&read("/proc/self/limits")?, &read("/proc/self/status")?)
 }
 

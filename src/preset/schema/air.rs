@@ -11,7 +11,7 @@ use super::phase;
 use crate::medium::MOST_NODES;
 use serde_json::{Map, Value, json};
 
-pub fn define(defs: &mut Map<String, Value>) {
+pub(super) fn define(defs: &mut Map<String, Value>) {
     defs.insert("profile".into(), profile());
     defs.insert(
         "coefficient".into(),

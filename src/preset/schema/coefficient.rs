@@ -8,13 +8,13 @@ use serde_json::{Value, json};
 
 /// What is scattered in: only air has a column from top to ground.
 #[derive(Clone, Copy, PartialEq)]
-pub enum Where {
+pub(super) enum Where {
     Air,
     Water,
 }
 
 /// One object for each kind; in water only the first three.
-pub fn all(place: Where) -> Vec<Value> {
+pub(super) fn all(place: Where) -> Vec<Value> {
     let [constant, table, power_law, refractive_index, bodhaine1999, cross_section] = KINDS;
     let mut all = vec![
         Object::new("The same at every wavelength").kind(constant).one_of(&units(place, false)).build(),

@@ -9,7 +9,7 @@ use super::parts::*;
 use serde_json::{Value, json};
 
 /// One object for each kind.
-pub fn all() -> Vec<Value> {
+pub(super) fn all() -> Vec<Value> {
     let [isotropic, rayleigh, henyey_greenstein, cornette_shanks, double, tabulated] = KINDS;
     vec![
         Object::new("The same in all directions").kind(isotropic).build(),

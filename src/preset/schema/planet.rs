@@ -7,7 +7,7 @@ use super::air;
 use super::parts::*;
 use serde_json::{Map, Value, json};
 
-pub fn define(defs: &mut Map<String, Value>) {
+pub(super) fn define(defs: &mut Map<String, Value>) {
     air::define(defs);
     let ground = Object::new("The ground: a sphere that scatters evenly (Lambert)")
         .length("radius", POSITIVE, "Radius of the ground")
@@ -28,7 +28,7 @@ pub fn define(defs: &mut Map<String, Value>) {
 }
 
 /// What every preset begins with.
-pub fn head(about: &str) -> Object {
+pub(super) fn head(about: &str) -> Object {
     Object::new(about)
         .may(SCHEMA_KEY, json!({ "description": "Where an editor finds this schema", "type": "string" }))
         .must("name", json!({ "description": "Also the name of its folder or tables: lower-case letters, digits, dashes",

@@ -9,7 +9,7 @@ use super::phase;
 use super::planet::head;
 use serde_json::{Map, Value, json};
 
-pub fn define(defs: &mut Map<String, Value>) {
+pub(super) fn define(defs: &mut Map<String, Value>) {
     let law = |about: &str, scatters: bool| {
         let mut all = coefficient::all(Where::Water);
         all.extend(own_laws(scatters));

@@ -7,7 +7,7 @@ use crate::transport::rays::Sample;
 use crate::transport::sunlight::Sunlight;
 
 /// A group of constituents whose single scattering is integrated as one, along one ray.
-pub struct SingleGroup<'a> {
+pub(crate) struct SingleGroup<'a> {
     /// What sunlight at each sample adds to the radiance at the start, see [`crate::transport::rays::Attenuation`].
     pub weights: Vec<Lanes>,
     /// For groups with a forward peak: T τ towards the sun, see [`Sunlight::times_depth`].
@@ -18,7 +18,7 @@ pub struct SingleGroup<'a> {
 /// its phase function; and to `deeper`, for groups with a forward peak, the same light weighted by the
 /// scattering depth that it crossed from the sun.
 #[inline(always)]
-pub fn single(
+pub(crate) fn single(
     samples: &[Sample],
     sunlight: &Sunlight,
     groups: &[SingleGroup],

@@ -3,18 +3,18 @@
 
 /// A dense matrix.
 #[derive(Clone, Debug)]
-pub struct Matrix {
+pub(super) struct Matrix {
     pub rows: usize,
     pub columns: usize,
     values: Vec<f64>,
 }
 
 impl Matrix {
-    pub fn zero(rows: usize, columns: usize) -> Self {
+    pub(super) fn zero(rows: usize, columns: usize) -> Self {
         Matrix { rows, columns, values: vec![0.0; rows * columns] }
     }
 
-    pub fn of(rows: usize, columns: usize, value: impl Fn(usize, usize) -> f64) -> Self {
+    pub(super) fn of(rows: usize, columns: usize, value: impl Fn(usize, usize) -> f64) -> Self {
         let mut m = Matrix::zero(rows, columns);
         for i in 0..rows {
             for j in 0..columns {
@@ -25,7 +25,7 @@ impl Matrix {
     }
 
     #[inline(always)]
-    pub fn at(&self, i: usize, j: usize) -> f64 {
+    pub(super) fn at(&self, i: usize, j: usize) -> f64 {
         self.values[i * self.columns + j]
     }
 
@@ -34,7 +34,7 @@ impl Matrix {
         self.values[i * self.columns + j] = v;
     }
 
-    pub fn row(&self, i: usize) -> &[f64] {
+    pub(super) fn row(&self, i: usize) -> &[f64] {
         &self.values[i * self.columns..(i + 1) * self.columns]
     }
 
@@ -43,7 +43,7 @@ impl Matrix {
     }
 
     /// self · other
-    pub fn times(&self, other: &Matrix) -> Matrix {
+    pub(super) fn times(&self, other: &Matrix) -> Matrix {
         let mut out = Matrix::zero(self.rows, other.columns);
         for i in 0..self.rows {
             for k in 0..self.columns {
@@ -56,12 +56,12 @@ impl Matrix {
         out
     }
 
-    pub fn transposed(&self) -> Matrix {
+    pub(super) fn transposed(&self) -> Matrix {
         Matrix::of(self.columns, self.rows, |i, j| self.at(j, i))
     }
 
     /// The lower triangle L of a symmetric positive definite matrix L Lᵀ; none where it is not one.
-    pub fn cholesky(&self) -> Option<Matrix> {
+    pub(super) fn cholesky(&self) -> Option<Matrix> {
         let n = self.rows;
         let mut l = Matrix::zero(n, n);
         for i in 0..n {
@@ -78,7 +78,7 @@ impl Matrix {
     }
 
     /// L⁻¹ b for a lower triangle, a column of `b` at a time.
-    pub fn forward(&self, b: &[f64]) -> Vec<f64> {
+    pub(super) fn forward(&self, b: &[f64]) -> Vec<f64> {
         let mut x = b.to_vec();
         for i in 0..self.rows {
             let dot: f64 = (0..i).map(|k| self.at(i, k) * x[k]).sum();
@@ -88,7 +88,7 @@ impl Matrix {
     }
 
     /// L⁻ᵀ b for a lower triangle.
-    pub fn backward(&self, b: &[f64]) -> Vec<f64> {
+    pub(super) fn backward(&self, b: &[f64]) -> Vec<f64> {
         let mut x = b.to_vec();
         for i in (0..self.rows).rev() {
             let dot: f64 = (i + 1..self.rows).map(|k| self.at(k, i) * x[k]).sum();
@@ -99,7 +99,7 @@ impl Matrix {
 
     /// Eigenvalues of a symmetric matrix and its eigenvectors in columns, by Jacobi's rotations (Golub & Van
     /// Loan, Matrix Computations, §8.5).
-    pub fn symmetric_eigen(mut self) -> (Vec<f64>, Matrix) {
+    pub(super) fn symmetric_eigen(mut self) -> (Vec<f64>, Matrix) {
         let n = self.rows;
         let mut vectors = Matrix::of(n, n, |i, j| if i == j { 1.0 } else { 0.0 });
         for _ in 0..60 {
@@ -144,7 +144,7 @@ impl Matrix {
     }
 
     /// Decomposed for [`Factors::solve`].
-    pub fn factorise(mut self) -> Factors {
+    pub(super) fn factorise(mut self) -> Factors {
         let n = self.rows;
         let mut order: Vec<usize> = (0..n).collect();
         for k in 0..n {
@@ -175,14 +175,14 @@ impl Matrix {
 
 /// A square matrix as L U with rows interchanged.
 #[derive(Clone, Debug)]
-pub struct Factors {
+pub(super) struct Factors {
     lu: Matrix,
     order: Vec<usize>,
 }
 
 impl Factors {
     /// A⁻¹ b
-    pub fn solve(&self, b: &[f64]) -> Vec<f64> {
+    pub(super) fn solve(&self, b: &[f64]) -> Vec<f64> {
         let n = b.len();
         let mut x: Vec<f64> = self.order.iter().map(|&i| b[i]).collect();
         for i in 0..n {

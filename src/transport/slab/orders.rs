@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 const STEP: (f64, f64) = (0.02, 0.04);
 
 /// Nodes of depth and how light fares between them, for one layer.
-pub struct Sweeps {
+pub(super) struct Sweeps {
     c: f64,
     t: Vec<f64>,
     /// `[cell][stream]`: what is left of the light upwards, and the weights of the source at the cell's upper and
@@ -24,7 +24,7 @@ pub struct Sweeps {
 }
 
 /// Moments and irradiances of the light of the orders 1 … n − 1 of a sunbeam.
-pub struct Later {
+pub(super) struct Later {
     c: f64,
     t: Vec<f64>,
     /// `[node][degree]`, times e^{ct}.
@@ -40,7 +40,7 @@ struct Order {
 }
 
 impl Sweeps {
-    pub fn new(slab: &Slab, depth: f64) -> Sweeps {
+    pub(super) fn new(slab: &Slab, depth: f64) -> Sweeps {
         let (t, c) = (nodes(depth), 0.5 * (1.0 + slab.slowest().min(1.0)));
         let mut cells = Vec::with_capacity((t.len() - 1) * slab.nodes.len());
         for pair in t.windows(2) {
@@ -63,7 +63,7 @@ impl Sweeps {
     }
 
     /// The orders below `n` of a beam over a black bed.
-    pub fn orders_below(&self, slab: &Slab, beam: &Beam, n: usize) -> Later {
+    pub(super) fn orders_below(&self, slab: &Slab, beam: &Beam, n: usize) -> Later {
         let (streams, degrees) = (slab.nodes.len(), slab.kernel.len());
         let mut later = Later {
             c: self.c,
@@ -144,7 +144,7 @@ impl Order {
 
 impl Later {
     /// Light upwards along a view at scaled optical depth `t`.
-    pub fn up(&self, slab: &Slab, view: &View, t: f64) -> f64 {
+    pub(super) fn up(&self, slab: &Slab, view: &View, t: f64) -> f64 {
         let steep = 1.0 / view.mu;
         let mut sum = 0.0;
         self.pieces(slab, view, 0, t, f64::INFINITY, |from, to, q| {
@@ -155,7 +155,7 @@ impl Later {
     }
 
     /// Light downwards along a view at scaled optical depth `t`, scattered below the surface.
-    pub fn down(&self, slab: &Slab, view: &View, t: f64) -> f64 {
+    pub(super) fn down(&self, slab: &Slab, view: &View, t: f64) -> f64 {
         let steep = 1.0 / view.mu;
         let mut sum = 0.0;
         self.pieces(slab, view, 1, 0.0, t, |from, to, q| {
@@ -166,7 +166,7 @@ impl Later {
     }
 
     /// Irradiance of the plane at `t` from below and from above.
-    pub fn irradiance(&self, t: f64) -> [f64; 2] {
+    pub(super) fn irradiance(&self, t: f64) -> [f64; 2] {
         let k = self.t.partition_point(|&node| node <= t).clamp(1, self.t.len() - 1);
         let x = ((t - self.t[k - 1]) / (self.t[k] - self.t[k - 1])).clamp(0.0, 1.0);
         [0, 1].map(|side| {

@@ -4,7 +4,7 @@ use crate::math::quadrature::gauss_legendre;
 
 /// Cosines and weights of the streams of a hemisphere: Gauss–Legendre on (0, critical) and (critical, 1), or on
 /// (0, 1) where there is no critical angle.
-pub fn streams(critical: f64, per_panel: usize) -> Vec<(f64, f64)> {
+pub(super) fn streams(critical: f64, per_panel: usize) -> Vec<(f64, f64)> {
     if critical <= 0.0 {
         return gauss_legendre(2 * per_panel);
     }
@@ -15,7 +15,7 @@ pub fn streams(critical: f64, per_panel: usize) -> Vec<(f64, f64)> {
 }
 
 /// √((l − m)! / (l + m)!) P_l^m at x for l = m … degree, without the sign (−1)^m; P_0 … P_degree for mode 0.
-pub fn legendre(x: f64, mode: usize, degree: usize) -> Vec<f64> {
+pub(super) fn legendre(x: f64, mode: usize, degree: usize) -> Vec<f64> {
     let mut p = vec![1.0; degree + 1 - mode];
     for i in 1..=mode {
         p[0] *= ((2 * i - 1) as f64 / (2 * i) as f64 * (1.0 - x * x).max(0.0)).sqrt();
