@@ -41,6 +41,9 @@ pub enum Error {
     /// A wrong argument or combination of arguments.
     #[error("{}", Line(.0))]
     Argument(String),
+    /// Why a value cannot be used, where only a caller knows its file and key.
+    #[error("{}", Line(.0))]
+    Reason(String),
     /// A check that the user asked for did not hold.
     #[error("{}", Line(.0))]
     Check(String),
@@ -67,7 +70,7 @@ impl Error {
         match self {
             Error::Check(_) => 1,
             Error::Several { code, .. } => *code,
-            Error::Value { .. } | Error::File { .. } | Error::Argument(_) => 2,
+            Error::Value { .. } | Error::File { .. } | Error::Argument(_) | Error::Reason(_) => 2,
             Error::Machine { .. } | Error::NotFinite { .. } | Error::Interrupted => 3,
         }
     }
@@ -90,6 +93,18 @@ impl Error {
             _ if leads_round(&source) => Error::file(path, source),
             _ => Error::machine(path, source),
         }
+    }
+}
+
+impl From<String> for Error {
+    fn from(reason: String) -> Self {
+        Error::Reason(reason)
+    }
+}
+
+impl From<&str> for Error {
+    fn from(reason: &str) -> Self {
+        Error::Reason(reason.to_owned())
     }
 }
 

@@ -13,7 +13,7 @@ machine:    error
 math:
 geometry:   math
 spectrum:   error
-medium:
+medium:     error
 mapping:    machine
 transport:  geometry machine math medium
 algorithm1: error geometry machine mapping medium
@@ -191,6 +191,20 @@ fn the_list_has_no_circles() {
             assert!(lower.contains(other), "`{room}` knows `{other}`, which is not below it");
         }
         lower.insert(room);
+    }
+}
+
+/// Errors are one type, with what a user needs to mend them: no text alone.
+#[test]
+fn errors_are_one_type() {
+    let mut files = Vec::new();
+    sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut files);
+    for file in files {
+        let text = code(&fs::read_to_string(&file).unwrap());
+        for (at, _) in without_tests(&text).match_indices(", String>") {
+            let before = text[..at].rsplit(['(', ';', '=', ':', '{']).next().unwrap();
+            assert!(!before.contains("Result<"), "{}: Result<…, String>", file.display());
+        }
     }
 }
 

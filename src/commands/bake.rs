@@ -165,10 +165,10 @@ pub struct Args {
 /// Lowest and highest of something.
 type Range = [f64; 2];
 
-pub(super) fn space(name: &str) -> std::result::Result<ColourSpace, String> {
+pub(super) fn space(name: &str) -> Result<ColourSpace> {
     let all = ColourSpace::ALL;
     let names: Vec<&str> = all.iter().map(|s| s.name()).collect();
-    all.into_iter().find(|s| s.name() == name).ok_or(format!("expected one of {}", names.join(", ")))
+    all.into_iter().find(|s| s.name() == name).ok_or(format!("expected one of {}", names.join(", ")).into())
 }
 
 /// Bakes every preset, as many at once as fit in memory. One that fails does not stop the others; the error is

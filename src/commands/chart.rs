@@ -60,7 +60,7 @@ pub struct Args {
     quiet: bool,
 }
 
-fn count(text: &str) -> std::result::Result<usize, String> {
+fn count(text: &str) -> Result<usize> {
     match text.parse() {
         Ok(n) if (1..=10_000).contains(&n) => Ok(n),
         _ => Err("expected a number from 1 to 10000".into()),

@@ -27,7 +27,7 @@ pub enum Illuminant {
 }
 
 /// `sun`, `e`, `none`, or the path of a CSV file.
-pub fn illuminant(text: &str) -> std::result::Result<Illuminant, String> {
+pub fn illuminant(text: &str) -> Result<Illuminant> {
     match text {
         "sun" => Ok(Illuminant::Sun),
         "e" => Ok(Illuminant::EqualEnergy),

@@ -44,7 +44,7 @@ pub struct Args {
 }
 
 /// A share as `1%` or `0.01`.
-fn share(text: &str) -> std::result::Result<f64, String> {
+fn share(text: &str) -> Result<f64> {
     let (number, scale) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
     match number.trim().parse::<f64>() {
         Ok(v) if v >= 0.0 && v.is_finite() => Ok(v * scale),

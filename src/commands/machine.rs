@@ -72,7 +72,7 @@ fn check_threads(threads: Option<usize>) -> Result<Option<usize>> {
 }
 
 /// `auto`, a number of even samples, or a list of nm.
-pub(super) fn wavelengths(text: &str) -> std::result::Result<Vec<f64>, String> {
+pub(super) fn wavelengths(text: &str) -> Result<Vec<f64>> {
     if text == "auto" {
         return Ok(crate::spectrum::grid(crate::layout::settings::WAVELENGTHS));
     }
@@ -100,15 +100,15 @@ pub(super) fn wavelengths(text: &str) -> std::result::Result<Vec<f64>, String> {
 const MOST_WAVELENGTHS: usize = 500;
 
 /// Whether wavelengths (nm), in any order, are ones that a run may have.
-pub(super) fn in_range(list: &[f64]) -> std::result::Result<(), String> {
+pub(super) fn in_range(list: &[f64]) -> Result<()> {
     if list.is_empty() {
         return Err("at least one wavelength is needed".into());
     }
     if let Some(w) = list.iter().find(|w| !(100.0..=10_000.0).contains(*w)) {
-        return Err(format!("{w} nm is outside 100 to 10000 nm"));
+        return Err(format!("{w} nm is outside 100 to 10000 nm").into());
     }
     if list.len() > MOST_WAVELENGTHS {
-        return Err(format!("more than {MOST_WAVELENGTHS} wavelengths"));
+        return Err(format!("more than {MOST_WAVELENGTHS} wavelengths").into());
     }
     Ok(())
 }
@@ -117,7 +117,7 @@ pub(super) fn in_range(list: &[f64]) -> std::result::Result<(), String> {
 pub(super) const MOST_ORDERS: usize = 10_000;
 
 /// `auto` or a number of orders; `tolerance` is what `auto` converges to.
-pub(super) fn orders(text: &str, tolerance: f64) -> std::result::Result<Orders, String> {
+pub(super) fn orders(text: &str, tolerance: f64) -> Result<Orders> {
     if text == "auto" {
         return Ok(Orders::Converged { tolerance });
     }
@@ -128,11 +128,11 @@ pub(super) fn orders(text: &str, tolerance: f64) -> std::result::Result<Orders, 
 }
 
 /// `auto` or a number of orders of scattering in water.
-pub(super) fn water_orders(text: &str) -> std::result::Result<WaterOrders, String> {
+pub(super) fn water_orders(text: &str) -> Result<WaterOrders> {
     match text.parse::<usize>() {
         _ if text == "auto" => Ok(WaterOrders::All),
         Ok(n) if (1..=MOST_WATER_ORDERS).contains(&n) => Ok(WaterOrders::First(n)),
-        _ => Err(format!("expected `auto` or a number from 1 to {MOST_WATER_ORDERS}")),
+        _ => Err(format!("expected `auto` or a number from 1 to {MOST_WATER_ORDERS}").into()),
     }
 }
 

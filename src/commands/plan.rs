@@ -46,7 +46,7 @@ pub struct Args {
     quiet: bool,
 }
 
-fn views(text: &str) -> std::result::Result<usize, String> {
+fn views(text: &str) -> Result<usize> {
     match text.parse() {
         Ok(n) if (20..=20_000).contains(&n) => Ok(n),
         _ => Err("expected a number from 20 to 20000".into()),

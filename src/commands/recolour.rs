@@ -46,7 +46,7 @@ pub struct Args {
     pub adaptation: Adaptation,
 }
 
-fn kelvin(text: &str) -> std::result::Result<f64, String> {
+fn kelvin(text: &str) -> Result<f64> {
     match text.parse::<f64>() {
         Ok(k) if (100.0..=1e6).contains(&k) => Ok(k),
         _ => Err("expected a temperature from 100 to 1000000 K".into()),
@@ -98,7 +98,7 @@ fn wanted(args: &Args, manifest: &Manifest) -> Result<Wanted> {
             args.bake.display()
         )));
     }
-    let held = |reason: String| Error::file(&args.bake, format!("bake.json: colour.space: {reason}"));
+    let held = |reason: Error| Error::file(&args.bake, format!("bake.json: colour.space: {reason}"));
     let space = match args.colour_space {
         Some(space) => space,
         None => space(&manifest.colour.space).map_err(held)?,

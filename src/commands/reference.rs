@@ -62,7 +62,7 @@ pub struct Args {
 }
 
 /// A share as `0.1%` or `0.001`.
-fn ratio(text: &str) -> std::result::Result<f64, String> {
+fn ratio(text: &str) -> Result<f64> {
     let (number, unit) = match text.strip_suffix('%') {
         Some(n) => (n, 0.01),
         None => (text, 1.0),

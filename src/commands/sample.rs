@@ -78,7 +78,7 @@ pub fn run(args: &Args) -> Result<()> {
     }
     if args.exact {
         let nm = exact_wavelengths(args, &manifest)?;
-        let refuse = |reason: String| Error::file(&args.bake, format!("bake.json: {reason}"));
+        let refuse = |reason: Error| Error::file(&args.bake, format!("bake.json: {reason}"));
         let medium = planet.medium(&nm);
         medium.check().map_err(refuse)?;
         let baked = baked_orders(&manifest).map_err(refuse)?;
@@ -165,10 +165,10 @@ pub(super) fn exact_wavelengths(args: &Args, manifest: &Manifest) -> Result<Vec<
 }
 
 /// The orders that the bake was made of.
-pub(super) fn baked_orders(manifest: &Manifest) -> std::result::Result<Orders, String> {
+pub(super) fn baked_orders(manifest: &Manifest) -> Result<Orders> {
     match manifest.settings["orders"]["first"].as_u64() {
         Some(n) if (1..=MOST_ORDERS as u64).contains(&n) => Ok(Orders::First(n as usize)),
-        Some(n) => Err(format!("settings.orders.first = {n}: must be from 1 to {MOST_ORDERS}")),
+        Some(n) => Err(format!("settings.orders.first = {n}: must be from 1 to {MOST_ORDERS}").into()),
         None => Ok(Orders::Converged { tolerance: EXACT_TOLERANCE }),
     }
 }

@@ -67,14 +67,14 @@ fn exact(
     nm: &[f64],
     views: &[WaterView],
 ) -> Result<Vec<Vec<f64>>> {
-    let refuse = |reason: String| Error::file(&args.bake, format!("bake.json: {reason}"));
+    let refuse = |reason: Error| Error::file(&args.bake, format!("bake.json: {reason}"));
     let preset = manifest.waters.iter().find(|w| w.name == name);
-    let preset = preset.ok_or_else(|| refuse(format!("waters: {name} is missing")))?;
-    let water = Water::from_resolved(&preset.resolved).map_err(|e| refuse(e.to_string()))?;
+    let preset = preset.ok_or_else(|| refuse(format!("waters: {name} is missing").into()))?;
+    let water = Water::from_resolved(&preset.resolved).map_err(refuse)?;
     let orders = match manifest.settings["water_orders"]["first"].as_u64() {
         None => WaterOrders::All,
         Some(n) if (1..=MOST_WATER_ORDERS as u64).contains(&n) => WaterOrders::First(n as usize),
-        Some(n) => return Err(refuse(format!("settings.water_orders.first = {n}: out of range"))),
+        Some(n) => return Err(refuse(format!("settings.water_orders.first = {n}: out of range").into())),
     };
     let (air, media) = (planet.medium(nm), water.medium(nm));
     air.check().map_err(refuse)?;

@@ -110,7 +110,7 @@ pub fn part_text(folder: &Path, file: &str, most: u64) -> Result<String> {
 pub fn part(folder: &Path, file: &str) -> io::Result<Vec<u8>> {
     let mut from = regular(&place(folder, file)?, File::options().read(true))?;
     let length = from.metadata()?.len();
-    memory::check(length).map_err(|reason| invalid(&reason))?;
+    memory::check(length).map_err(|reason| invalid(&reason.to_string()))?;
     let mut bytes = Vec::with_capacity(length as usize);
     from.by_ref().take(length).read_to_end(&mut bytes)?;
     Ok(bytes)

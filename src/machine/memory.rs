@@ -6,6 +6,7 @@ mod limits;
 
 pub use allocator::{Allocator, clean_up_at_the_end_of_memory};
 
+use crate::error::Result;
 use std::path::Path;
 
 /// Bytes that can still be had without swapping: of the machine, of the control groups or of the limits of this process
@@ -40,7 +41,7 @@ const UNITS: [(&str, f64); 8] = [
 ];
 
 /// An amount of memory as a text: a number and a unit (`2GiB`, `500 MB`), without a unit bytes.
-pub fn parse(text: &str) -> Result<u64, String> {
+pub fn parse(text: &str) -> Result<u64> {
     let end = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
     let (number, unit) = (text[..end].trim(), text[end..].trim());
     let factor = UNITS.iter().find(|u| u.0.eq_ignore_ascii_case(unit)).map(|u| u.1);
@@ -65,12 +66,14 @@ const TRIFLE: u64 = 16 << 20;
 
 /// Whether so many bytes can be had now; the reason why not. Asked before anything of a size is made that a stranger's
 /// file or a slip of the pen decides.
-pub fn check(need: u64) -> Result<(), String> {
+pub fn check(need: u64) -> Result<()> {
     // A limit of the process lets nothing through.
     let bounds = [(machine(), SMALL), (groups::left(), TRIFLE), (limits::left(), 0)];
     let too_little = |(left, least): &(Option<u64>, u64)| left.filter(|&left| need > left.max(*least));
     match bounds.iter().filter_map(too_little).min() {
-        Some(free) => Err(format!("takes some {} of memory, and {} are free", shown(need), shown(free))),
+        Some(free) => {
+            Err(format!("takes some {} of memory, and {} are free", shown(need), shown(free)).into())
+        }
         None => Ok(()),
     }
 }
@@ -90,10 +93,10 @@ mod tests {
     /// Binary and decimal units, with and without a space; nothing else.
     #[test]
     fn amounts_are_read() {
-        assert_eq!(parse("2GiB"), Ok(2 << 30));
-        assert_eq!(parse("1.5 GB"), Ok(1_500_000_000));
-        assert_eq!(parse("750mb"), Ok(750_000_000));
-        assert_eq!(parse("4096"), Ok(4096));
+        assert_eq!(parse("2GiB").unwrap(), 2 << 30);
+        assert_eq!(parse("1.5 GB").unwrap(), 1_500_000_000);
+        assert_eq!(parse("750mb").unwrap(), 750_000_000);
+        assert_eq!(parse("4096").unwrap(), 4096);
         for bad in ["", "GiB", "-1GB", "0", "2 lakes", "NaN", "inf", "1e30GB", "2GiB2"] {
             assert!(parse(bad).is_err(), "{bad}");
         }
@@ -102,9 +105,9 @@ mod tests {
     /// More than any machine has is refused, a megabyte is not.
     #[test]
     fn more_than_there_is() {
-        assert_eq!(check(1 << 20), Ok(()));
+        check(1 << 20).unwrap();
         if available().is_some() {
-            let reason = check(1 << 60).unwrap_err();
+            let reason = check(1 << 60).unwrap_err().to_string();
             assert!(reason.starts_with("takes some 1152921504.6 GB of memory, and "), "{reason}");
         }
     }

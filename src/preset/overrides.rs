@@ -11,7 +11,7 @@ use serde_json::{Map, Value};
 
 /// Applies one assignment. Errors: no `=`, a path that leads nowhere (with the nearest key that exists).
 pub(super) fn apply(root: &mut Value, file: &str, assignment: &str) -> Result<()> {
-    let refuse = |reason: String| Error::Argument(format!("--set {assignment}: {reason} ({file})"));
+    let refuse = |reason: Error| Error::Argument(format!("--set {assignment}: {reason} ({file})"));
     let (path, text) =
         assignment.split_once('=').ok_or_else(|| refuse("needs the form path.to.key=value".into()))?;
     if text.parse::<f64>().is_ok_and(|v| !v.is_finite()) {
@@ -34,7 +34,7 @@ fn steps(path: &str) -> Vec<String> {
     path.trim().replace('[', ".").replace(']', "").split('.').map(str::to_string).collect()
 }
 
-fn descend<'a>(place: &'a mut Value, step: &str) -> std::result::Result<&'a mut Value, String> {
+fn descend<'a>(place: &'a mut Value, step: &str) -> Result<&'a mut Value> {
     match place {
         Value::Object(map) => {
             if !map.contains_key(step) {
@@ -46,11 +46,11 @@ fn descend<'a>(place: &'a mut Value, step: &str) -> std::result::Result<&'a mut 
             let k = index(list, step)?;
             Ok(&mut list[k])
         }
-        _ => Err(format!("`{step}` lies below a plain value")),
+        _ => Err(format!("`{step}` lies below a plain value").into()),
     }
 }
 
-fn put(place: &mut Value, step: &str, value: Value) -> std::result::Result<(), String> {
+fn put(place: &mut Value, step: &str, value: Value) -> Result<()> {
     match place {
         Value::Object(map) => {
             set_key(map, step, value);
@@ -65,7 +65,7 @@ fn put(place: &mut Value, step: &str, value: Value) -> std::result::Result<(), S
             }
             Ok(())
         }
-        _ => Err(format!("`{step}` lies below a plain value")),
+        _ => Err(format!("`{step}` lies below a plain value").into()),
     }
 }
 
@@ -99,9 +99,13 @@ fn add_sources(value: &mut Value) {
     }
 }
 
-fn index(list: &[Value], step: &str) -> std::result::Result<usize, String> {
+fn index(list: &[Value], step: &str) -> Result<usize> {
     if let Ok(k) = step.parse::<usize>() {
-        return if k < list.len() { Ok(k) } else { Err(format!("item {k} of a list of {}", list.len())) };
+        return if k < list.len() {
+            Ok(k)
+        } else {
+            Err(format!("item {k} of a list of {}", list.len()).into())
+        };
     }
     let name = |v: &Value| v.get("name").and_then(Value::as_str).map(str::to_string);
     let names: Vec<String> = list.iter().filter_map(name).collect();
@@ -110,13 +114,14 @@ fn index(list: &[Value], step: &str) -> std::result::Result<usize, String> {
         .ok_or_else(|| missing(step, names.iter().map(String::as_str)))
 }
 
-fn missing<'a>(step: &str, present: impl Iterator<Item = &'a str>) -> String {
+fn missing<'a>(step: &str, present: impl Iterator<Item = &'a str>) -> Error {
     let present: Vec<&str> = present.collect();
-    match nearest(step, present.iter().copied()) {
+    let reason = match nearest(step, present.iter().copied()) {
         _ if present.is_empty() => format!("there is no `{step}`, and nothing beside it"),
         None => format!("there is no `{step}`; there are {}", quoted(present)),
         Some(nearest) => format!("there is no `{step}`; the nearest is `{nearest}`"),
-    }
+    };
+    Error::Reason(reason)
 }
 
 #[cfg(test)]

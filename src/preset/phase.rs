@@ -1,6 +1,7 @@
 //! Phase functions against wavelength.
 
 use super::rayleigh::air_king_factor;
+use crate::error::Result;
 use crate::medium::PhaseFunction;
 use crate::spectrum::Spectrum;
 use serde::{Deserialize, Serialize};
@@ -103,10 +104,10 @@ impl PhaseLaw {
     }
 
     /// Whether a table is one: a row for each wavelength, a value for each cosine, both rising.
-    pub fn check(&self) -> Result<(), String> {
+    pub fn check(&self) -> Result<()> {
         let PhaseLaw::Tabulated { cosines, wavelengths_nm, rows } = self else { return Ok(()) };
         if cosines.len() > MOST_ANGLES {
-            return Err(format!("{} cosines: {MOST_ANGLES} are the most", cosines.len()));
+            return Err(format!("{} cosines: {MOST_ANGLES} are the most", cosines.len()).into());
         }
         let rising = |list: &[f64]| list.windows(2).all(|p| p[0] < p[1]);
         if cosines.len() < 2 || cosines[0] != -1.0 || cosines[cosines.len() - 1] != 1.0 || !rising(cosines) {
@@ -116,7 +117,9 @@ impl PhaseLaw {
             return Err("wavelengths_nm must rise, with a row for each".into());
         }
         match rows.iter().position(|row| row.len() != cosines.len()) {
-            Some(k) => Err(format!("row {k} has {} values for {} cosines", rows[k].len(), cosines.len())),
+            Some(k) => {
+                Err(format!("row {k} has {} values for {} cosines", rows[k].len(), cosines.len()).into())
+            }
             None => Ok(()),
         }
     }

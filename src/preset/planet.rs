@@ -141,14 +141,16 @@ impl Planet {
 
     /// The planet that [`Planet::resolved`] wrote. Refuses what is not one.
     pub fn from_resolved(value: &Value) -> Result<Planet> {
-        let refuse = |reason: String| Error::Argument(format!("resolved preset: {reason}"));
-        let planet: Planet = Planet::deserialize(value).map_err(|e| refuse(e.to_string()))?;
+        let refuse = |reason: Error| Error::Argument(format!("resolved preset: {reason}"));
+        let planet: Planet = Planet::deserialize(value).map_err(|e| refuse(e.to_string().into()))?;
         // It becomes a folder's where the bake is recoloured.
-        check_name(&planet.name).map_err(|reason| refuse(format!("name: {reason}")))?;
+        check_name(&planet.name).map_err(|reason| refuse(format!("name: {reason}").into()))?;
         check_shell(planet.ground_radius, planet.top_radius)
-            .map_err(|reason| refuse(format!("ground_radius_m, top_radius_m: {reason}")))?;
+            .map_err(|reason| refuse(format!("ground_radius_m, top_radius_m: {reason}").into()))?;
         for c in &planet.constituents {
-            c.phase.check().map_err(|reason| refuse(format!("constituents.{}.phase: {reason}", c.name)))?;
+            c.phase
+                .check()
+                .map_err(|reason| refuse(format!("constituents.{}.phase: {reason}", c.name).into()))?;
         }
         planet.medium(&grid(9)).check().map_err(refuse)?;
         Ok(planet)

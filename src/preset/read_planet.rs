@@ -91,14 +91,14 @@ pub(super) fn name(raw: &Raw) -> Result<String> {
 }
 
 /// Whether a text can be a name; the reason why not.
-pub(super) fn check_name(text: &str) -> std::result::Result<(), String> {
+pub(super) fn check_name(text: &str) -> Result<()> {
     let good = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     if text.is_empty() || !text.chars().all(good) {
         return Err("must consist of lower-case letters, digits and dashes".into());
     }
     // A folder's name may have 255 bytes, and a bake adds some of its own while it is written.
     if text.len() > MOST_NAME {
-        return Err(format!("must have {MOST_NAME} letters at most"));
+        return Err(format!("must have {MOST_NAME} letters at most").into());
     }
     Ok(())
 }

@@ -89,11 +89,13 @@ impl Water {
 
     /// The water that [`Water::resolved`] wrote. Refuses what is not one.
     pub fn from_resolved(value: &Value) -> Result<Water> {
-        let refuse = |reason: String| Error::Argument(format!("resolved water: {reason}"));
-        let water = Water::deserialize(value).map_err(|e| refuse(e.to_string()))?;
-        check_name(&water.name).map_err(|reason| refuse(format!("name: {reason}")))?;
+        let refuse = |reason: Error| Error::Argument(format!("resolved water: {reason}"));
+        let water = Water::deserialize(value).map_err(|e| refuse(e.to_string().into()))?;
+        check_name(&water.name).map_err(|reason| refuse(format!("name: {reason}").into()))?;
         for s in &water.substances {
-            s.phase.check().map_err(|reason| refuse(format!("substances.{}.phase: {reason}", s.name)))?;
+            s.phase
+                .check()
+                .map_err(|reason| refuse(format!("substances.{}.phase: {reason}", s.name).into()))?;
         }
         water.check().map_err(refuse)?;
         Ok(water)
@@ -105,13 +107,14 @@ impl Water {
     }
 
     /// Whether its numbers together make a water that can be solved.
-    pub fn check(&self) -> std::result::Result<(), String> {
+    pub fn check(&self) -> Result<()> {
         let medium = self.medium(&crate::spectrum::grid(9));
         if !(self.largest_depth > 0.0 && self.largest_depth <= MOST_DEPTH) {
             return Err(format!(
                 "largest depth {} m: must be over 0 and at most {MOST_DEPTH}",
                 self.largest_depth
-            ));
+            )
+            .into());
         }
         if medium.refractive_index.iter().any(|n| !(1.0..=2.5).contains(n)) {
             return Err("its refractive index must lie between 1 and 2.5".into());
@@ -127,7 +130,8 @@ impl Water {
                     let nm = medium.wavelengths_nm[w];
                     return Err(format!(
                         "a coefficient of {part} 1/m at {nm} nm: must be 0 to {MOST_EXTINCTION}"
-                    ));
+                    )
+                    .into());
                 }
                 sum += part;
             }

@@ -26,10 +26,10 @@ impl Air {
     }
 }
 
-fn read(bake: &Bake) -> std::result::Result<Air, String> {
+fn read(bake: &Bake) -> Result<Air> {
     let groups = bake.constants.counts[0] as usize;
     if groups == 0 || groups > MOST_GROUPS {
-        return Err(format!("{groups} groups of phase functions: the march sums 1 to {MOST_GROUPS}"));
+        return Err(format!("{groups} groups of phase functions: the march sums 1 to {MOST_GROUPS}").into());
     }
     let mut rows = vec![vec![[0.0; 4]; ALTITUDES]; groups + 1];
     let constituents = bake.manifest.preset.resolved["constituents"].as_array();
@@ -44,7 +44,8 @@ fn read(bake: &Bake) -> std::result::Result<Air, String> {
         if row.is_some_and(|r| r >= groups) {
             return Err(format!(
                 "constituents.{name}: folded into the table of the rest: there is nothing to march"
-            ));
+            )
+            .into());
         }
         let [ground, top] = bake.radii();
         for k in 0..ALTITUDES {

@@ -6,6 +6,7 @@ use glam::{DMat3, DVec3};
 use tyndall::internals::geometry::Point;
 use tyndall::internals::layout::sky::Component;
 use tyndall::internals::layout::water::lookup::WaterView;
+use tyndall::{Error, Result};
 
 /// Either found from the picture or an exposure value at ISO 100.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,14 +24,14 @@ const SATURATION: f64 = 1.2;
 const MIDDLE: f64 = 0.3;
 
 impl std::str::FromStr for Exposure {
-    type Err = String;
+    type Err = Error;
 
     /// `auto`, `auto+1.5`, `auto-2` or a number.
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self> {
         let number = |text: &str| {
             let value: f64 =
-                text.parse().map_err(|_| "not auto, auto+STOPS or a number (EV100)".to_string())?;
-            if value.abs() <= 60.0 { Ok(value) } else { Err("must be between -60 and 60".to_string()) }
+                text.parse().map_err(|_| Error::from("not auto, auto+STOPS or a number (EV100)"))?;
+            if value.abs() <= 60.0 { Ok(value) } else { Err("must be between -60 and 60".into()) }
         };
         match text.strip_prefix("auto") {
             Some("") => Ok(Exposure::Auto(0.0)),
@@ -115,9 +116,9 @@ mod tests {
     /// A number is an EV100, `auto` may be shifted, and nothing else is taken.
     #[test]
     fn exposures_in_words() {
-        assert_eq!("14.5".parse(), Ok(Exposure::Ev100(14.5)));
-        assert_eq!("auto".parse(), Ok(Exposure::Auto(0.0)));
-        assert_eq!("auto-2".parse(), Ok(Exposure::Auto(-2.0)));
+        assert_eq!("14.5".parse::<Exposure>().unwrap(), Exposure::Ev100(14.5));
+        assert_eq!("auto".parse::<Exposure>().unwrap(), Exposure::Auto(0.0));
+        assert_eq!("auto-2".parse::<Exposure>().unwrap(), Exposure::Auto(-2.0));
         for wrong in ["", "bright", "auto2x", "nan", "1e9"] {
             assert!(wrong.parse::<Exposure>().is_err(), "{wrong}");
         }

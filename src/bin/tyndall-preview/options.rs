@@ -103,42 +103,42 @@ pub enum MethodName {
     March2d,
 }
 
-fn number(text: &str, low: f64, high: f64) -> std::result::Result<f64, String> {
+fn number(text: &str, low: f64, high: f64) -> Result<f64> {
     match text.parse() {
         Ok(v) if (low..=high).contains(&v) => Ok(v),
-        _ => Err(format!("must be a number between {low} and {high}")),
+        _ => Err(format!("must be a number between {low} and {high}").into()),
     }
 }
 
 /// A name of a picture that can be written: one that ends in .png, or in nothing.
-fn picture(text: &str) -> std::result::Result<PathBuf, String> {
+fn picture(text: &str) -> Result<PathBuf> {
     let path = PathBuf::from(text);
     match path.extension() {
         Some(kind) if !kind.eq_ignore_ascii_case("png") => {
             let better = path.with_extension("png");
-            Err(format!("only PNG can be written: name it {}", better.display()))
+            Err(format!("only PNG can be written: name it {}", better.display()).into())
         }
         _ => Ok(path),
     }
 }
 
-fn altitude(text: &str) -> std::result::Result<f64, String> {
+fn altitude(text: &str) -> Result<f64> {
     number(text, 0.0, 1e12)
 }
 
-fn angle(text: &str) -> std::result::Result<f64, String> {
+fn angle(text: &str) -> Result<f64> {
     number(text, -90.0, 90.0)
 }
 
-fn heading(text: &str) -> std::result::Result<f64, String> {
+fn heading(text: &str) -> Result<f64> {
     number(text, -360.0, 360.0)
 }
 
-fn field(text: &str) -> std::result::Result<f64, String> {
+fn field(text: &str) -> Result<f64> {
     number(text, 0.01, 170.0)
 }
 
-fn asymmetry(text: &str) -> std::result::Result<f64, String> {
+fn asymmetry(text: &str) -> Result<f64> {
     number(text, -0.99, 0.99)
 }
 

@@ -16,7 +16,7 @@ pub struct Shard {
 }
 
 /// `K/N`, K from 1 to N.
-pub fn shard(text: &str) -> std::result::Result<Shard, String> {
+pub fn shard(text: &str) -> Result<Shard> {
     let numbers = text.split_once('/').and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
     match numbers {
         Some((number, of)) if (1..=of).contains(&number) => Ok(Shard { number, of }),
@@ -96,7 +96,7 @@ mod tests {
             all.sort_unstable();
             assert_eq!(all, list, "{of}");
         }
-        assert_eq!(shard("3/8"), Ok(Shard { number: 3, of: 8 }));
+        assert_eq!(shard("3/8").unwrap(), Shard { number: 3, of: 8 });
         for bad in ["0/8", "9/8", "1", "1/0", "-1/2", "1/2/3"] {
             assert!(shard(bad).is_err(), "{bad}");
         }

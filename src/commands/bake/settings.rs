@@ -130,7 +130,7 @@ pub(super) fn settings(args: &Args) -> Result<(Settings, Sized)> {
             })?;
             continue;
         }
-        let refuse = |reason: String| Error::Argument(format!("--size {text}: {reason}"));
+        let refuse = |reason: Error| Error::Argument(format!("--size {text}: {reason}"));
         if name == "compact-transmittance" {
             let [altitude, view] = numbers(size).map_err(refuse)?;
             check_size([altitude, view, 2, 2], &settings.window).map_err(refuse)?;
@@ -255,20 +255,20 @@ fn water_size(text: &str) -> Option<[usize; 3]> {
 /// Texels that a table may have: 256 million floats, four a texel, are a gigabyte.
 const MOST_TEXELS: usize = 1 << 26;
 
-fn numbers<const N: usize>(text: &str) -> std::result::Result<[usize; N], String> {
+fn numbers<const N: usize>(text: &str) -> Result<[usize; N]> {
     let parts: Vec<usize> = text
         .split('x')
-        .map(|p| p.parse().map_err(|_| format!("`{p}` is not a number")))
-        .collect::<std::result::Result<_, String>>()?;
+        .map(|p| p.parse().map_err(|_| Error::Reason(format!("`{p}` is not a number"))))
+        .collect::<Result<_>>()?;
     let example = if N == 4 { "four numbers, e.g. 32x128x32x8" } else { "two numbers, e.g. 48x128" };
-    parts.try_into().map_err(|_| format!("expected {example}"))
+    parts.try_into().map_err(|_| Error::Reason(format!("expected {example}")))
 }
 
 /// Whether a table of a window may have a size.
-fn check_size(size: [usize; 4], window: &Window) -> std::result::Result<(), String> {
+fn check_size(size: [usize; 4], window: &Window) -> Result<()> {
     let texels = size.iter().try_fold(1usize, |n, &s| n.checked_mul(s)).filter(|&n| n <= MOST_TEXELS);
     if texels.is_none() {
-        return Err(format!("more than {MOST_TEXELS} texels"));
+        return Err(format!("more than {MOST_TEXELS} texels").into());
     }
     let [altitudes, views, suns, azimuths] = size;
     let one = |n: usize, given: bool| n >= if given { 1 } else { 2 };

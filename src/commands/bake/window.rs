@@ -1,5 +1,6 @@
 //! Ranges of altitudes and suns as people write them, and sizes of tables that suit them.
 
+use crate::error::Result;
 use crate::layout::compact;
 use crate::layout::compact::Kind;
 use crate::layout::elek2010;
@@ -9,7 +10,7 @@ use crate::medium::Medium;
 use crate::preset::{Metric, Tolerance};
 
 /// `2m`, `0..200m`, `300m..12km`: metres; the first number has the unit of the last where it has none.
-pub(crate) fn altitudes(text: &str) -> Result<[f64; 2], String> {
+pub(crate) fn altitudes(text: &str) -> Result<[f64; 2]> {
     let form = || "expected a height or a range of heights, e.g. 2m, 0..12km".to_string();
     let (first, last) = text.split_once("..").unwrap_or((text, text));
     let split = |t: &str| -> Option<(f64, Option<f64>)> {
@@ -33,7 +34,7 @@ pub(crate) fn altitudes(text: &str) -> Result<[f64; 2], String> {
 }
 
 /// `35`, `-6..60`: degrees.
-pub(crate) fn suns(text: &str) -> Result<[f64; 2], String> {
+pub(crate) fn suns(text: &str) -> Result<[f64; 2]> {
     let (first, last) = text.split_once("..").unwrap_or((text, text));
     let number = |t: &str| {
         t.trim()
@@ -48,7 +49,7 @@ pub(crate) fn suns(text: &str) -> Result<[f64; 2], String> {
 }
 
 /// `1%`, `1dE`: what 95 % of views keep within.
-pub(crate) fn tolerance(text: &str) -> Result<Tolerance, String> {
+pub(crate) fn tolerance(text: &str) -> Result<Tolerance> {
     let form = || "expected an error of RGB in per cent or one in ΔE2000, e.g. 1% or 1dE".to_string();
     let number = |t: &str| t.trim().parse::<f64>().ok().filter(|v| (1e-9..=1000.0).contains(v));
     let (metric, most) = if let Some(t) = text.strip_suffix('%') {
@@ -60,7 +61,7 @@ pub(crate) fn tolerance(text: &str) -> Result<Tolerance, String> {
     Ok(Tolerance { metric, most, share: 0.95 })
 }
 
-fn rising(ends: [f64; 2]) -> Result<[f64; 2], String> {
+fn rising(ends: [f64; 2]) -> Result<[f64; 2]> {
     if ends[0] <= ends[1] { Ok(ends) } else { Err("the first must not be greater than the second".into()) }
 }
 
@@ -109,12 +110,12 @@ mod tests {
     /// What people type, and what they should not.
     #[test]
     fn ranges_are_read() {
-        assert_eq!(altitudes("2m"), Ok([2.0, 2.0]));
-        assert_eq!(altitudes("0..12km"), Ok([0.0, 12e3]));
-        assert_eq!(altitudes("300m..1.5km"), Ok([300.0, 1500.0]));
-        assert_eq!(altitudes("10..1e3"), Ok([10.0, 1e3]));
-        assert_eq!(suns("-6..60"), Ok([-6.0, 60.0]));
-        assert_eq!(suns("35"), Ok([35.0, 35.0]));
+        assert_eq!(altitudes("2m").unwrap(), [2.0, 2.0]);
+        assert_eq!(altitudes("0..12km").unwrap(), [0.0, 12e3]);
+        assert_eq!(altitudes("300m..1.5km").unwrap(), [300.0, 1500.0]);
+        assert_eq!(altitudes("10..1e3").unwrap(), [10.0, 1e3]);
+        assert_eq!(suns("-6..60").unwrap(), [-6.0, 60.0]);
+        assert_eq!(suns("35").unwrap(), [35.0, 35.0]);
         for text in ["", "2 miles", "3..2km", "-1..5", "nan", "0..inf"] {
             assert!(altitudes(text).is_err(), "{text}");
         }

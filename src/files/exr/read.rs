@@ -20,7 +20,7 @@ use std::io::Cursor;
 use std::path::Path;
 
 /// Why a file cannot be read; [`from_exr_bytes`] adds the file's name.
-type Read<T> = std::result::Result<T, String>;
+type Read<T> = Result<T>;
 
 /// The atlas in the bytes of an EXR file, its channels in alphabetical order; `path` is for messages only.
 ///
@@ -80,7 +80,7 @@ fn empty_atlas(name: String, header: &Header) -> Read<Atlas> {
     let mut packing = [0usize; 5];
     for (slot, key) in packing.iter_mut().zip(header::PACKING) {
         let Some(Attribute::Int(v)) = attributes.remove(key) else {
-            return Err(format!("the header has no {key} of type int: not a file of this tool"));
+            return Err(format!("the header has no {key} of type int: not a file of this tool").into());
         };
         *slot = usize::try_from(v).ok().filter(|&v| v > 0).ok_or(format!("damaged header: {key} = {v}"))?;
     }
@@ -88,7 +88,7 @@ fn empty_atlas(name: String, header: &Header) -> Read<Atlas> {
     let origin = match attributes.remove(header::ORIGIN.0) {
         None => Origin::TopLeft,
         Some(Attribute::Text(text)) if text == header::ORIGIN.1 => Origin::BottomLeft,
-        Some(other) => return Err(format!("damaged header: {} = {other:?}", header::ORIGIN.0)),
+        Some(other) => return Err(format!("damaged header: {} = {other:?}", header::ORIGIN.0).into()),
     };
     let atlas = Atlas { name, width, height, slices, columns, origin, channels: Vec::new(), attributes };
     let position = header.own_attributes.layer_position;
@@ -105,7 +105,7 @@ fn empty_atlas(name: String, header: &Header) -> Read<Atlas> {
     match header.compression {
         // Tiles know no difference between the two.
         Compression::ZIP1 | Compression::ZIP16 => Ok(atlas),
-        other => Err(format!("its compression is not ZIP but {other}")),
+        other => Err(format!("its compression is not ZIP but {other}").into()),
     }
 }
 
@@ -116,7 +116,9 @@ fn channel_types(header: &Header) -> Read<Vec<(String, usize)>> {
         match channel.sample_type {
             SampleType::F16 => Ok((name, 2)),
             SampleType::F32 => Ok((name, 4)),
-            SampleType::U32 => Err(format!("channel {name:?} has whole numbers; wanted is half or float")),
+            SampleType::U32 => {
+                Err(Error::Reason(format!("channel {name:?} has whole numbers; wanted is half or float")))
+            }
         }
     };
     header.channels.list.iter().map(channel_type).collect()
@@ -137,7 +139,7 @@ fn check_size(header: &Header, types: &[(String, usize)], length: usize) -> Read
     let raw = width.checked_mul(height).and_then(|n| n.checked_mul(texel));
     if header.chunk_count > length / LEAST_TILE || raw.is_none_or(|raw| raw > largest_inflated(length)) {
         let picture = format!("{width}x{height} texels of {texel} bytes");
-        return Err(format!("truncated or damaged: {picture} cannot be in a file of {length} bytes"));
+        return Err(format!("truncated or damaged: {picture} cannot be in a file of {length} bytes").into());
     }
     // Unpacked tiles, their channels put together, and the table that a caller makes of them as single precision.
     memory::check(raw.unwrap_or(0).saturating_mul(5) as u64)
@@ -156,7 +158,7 @@ fn stored_tiles(reader: Reader<Cursor<&[u8]>>, columns: usize) -> Read<(MetaData
     for (slice, tile) in tiles.iter().enumerate() {
         let tile_index = Vec2(slice % columns, slice / columns);
         if place(tile) != Some(TileCoordinates { tile_index, level_index: Vec2(0, 0) }) {
-            return Err(format!("truncated or damaged: slice {slice} is not at its place"));
+            return Err(format!("truncated or damaged: slice {slice} is not at its place").into());
         }
     }
     Ok((meta, tiles))

@@ -1,6 +1,7 @@
 //! What the look-ups need of `bake.json`, in the form that `shell.wgsl` declares, as constants of the shader: compilers
 //! then drop what a bake does not have, and a pixel loads nothing of it.
 
+use crate::error::Result;
 use crate::files::manifest::{EncodingKind, Manifest, Table};
 
 /// `Table` of `shell.wgsl`.
@@ -92,7 +93,7 @@ impl TableConstants {
 
 impl Constants {
     /// Those of a layout, `compact` or `elek2010`. Errors: what of `bake.json` no look-up can be made of.
-    pub fn new(manifest: &Manifest, layout: &str) -> Result<Self, String> {
+    pub fn new(manifest: &Manifest, layout: &str) -> Result<Self> {
         let number = |name: &str| {
             let found = manifest.constants.get(name).and_then(|v| v.first()).copied();
             found.ok_or_else(|| format!("bake.json: constants.{name} is missing"))
@@ -121,13 +122,13 @@ impl Constants {
         Ok(out)
     }
 
-    fn add_groups(&mut self, tables: &[&Table], radii: [f64; 2]) -> Result<(), String> {
+    fn add_groups(&mut self, tables: &[&Table], radii: [f64; 2]) -> Result<()> {
         for table in tables {
             let constants = TableConstants::new(table, radii);
             if self.groups.is_empty() {
                 self.single = constants;
             } else if !self.single.stacks_with(&constants) {
-                return Err(format!("tables.{}: of another shape than {}", table.name, tables[0].name));
+                return Err(format!("tables.{}: of another shape than {}", table.name, tables[0].name).into());
             }
             self.groups.push([constants.scale, constants.offset]);
         }

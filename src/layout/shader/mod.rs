@@ -82,12 +82,7 @@ fn bound<'a>(manifest: &'a Manifest, layout: &str) -> Vec<Bound<'a>> {
         .collect()
 }
 
-fn text(
-    manifest: &Manifest,
-    layout: &str,
-    constants: &Constants,
-    language: Language,
-) -> std::result::Result<String, String> {
+fn text(manifest: &Manifest, layout: &str, constants: &Constants, language: Language) -> Result<String> {
     let tables = bound(manifest, layout);
     let of_layout = if layout == "compact" { COMPACT } else { ELEK2010 };
     let parts = [

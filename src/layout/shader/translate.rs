@@ -5,6 +5,7 @@
 
 use super::Language;
 use super::tokens::{Kind, Token, closing, next, split, text, tokens};
+use crate::error::{Error, Result};
 
 /// What the translation is preceded by: what a language cannot say in an expression.
 const GLSL: &str = "\
@@ -35,7 +36,7 @@ int3 texture_size(Texture3D<float4> image) {
 ";
 
 /// A text of the look-ups in a language. Errors: WGSL that this does not know, with its words.
-pub(super) fn translate(wgsl: &str, language: Language) -> Result<String, String> {
+pub(super) fn translate(wgsl: &str, language: Language) -> Result<String> {
     match language {
         Language::Wgsl => Ok(wgsl.to_string()),
         Language::Glsl => Ok(format!("{GLSL}\n{}", Writer(language).all(&tokens(wgsl))?)),
@@ -50,7 +51,7 @@ impl Writer {
         self.0 == Language::Hlsl
     }
 
-    fn all(&self, tokens: &[Token]) -> Result<String, String> {
+    fn all(&self, tokens: &[Token]) -> Result<String> {
         let (mut out, mut at) = (String::new(), 0);
         while at < tokens.len() {
             let (written, after) = self.one(tokens, at)?;
@@ -61,7 +62,7 @@ impl Writer {
     }
 
     /// What begins at `at`, and where the next thing does.
-    fn one(&self, tokens: &[Token], at: usize) -> Result<(String, usize), String> {
+    fn one(&self, tokens: &[Token], at: usize) -> Result<(String, usize)> {
         let (kind, word) = tokens[at];
         match (kind, word) {
             (Kind::Word, "struct") => self.structure(tokens, at),
@@ -96,7 +97,7 @@ impl Writer {
     }
 
     /// A type and the name that is of it.
-    fn declared(&self, name: &str, of: &[Token]) -> Result<String, String> {
+    fn declared(&self, name: &str, of: &[Token]) -> Result<String> {
         let of: Vec<Token> = of.iter().filter(|t| t.0 != Kind::Space).copied().collect();
         let of = match text(&of).as_str() {
             "texture_2d<f32>" if self.hlsl() => "Texture2D<float4>",
@@ -108,20 +109,20 @@ impl Writer {
                 [(_, "array"), _, (_, item), _, (_, count), _] => {
                     return Ok(format!("{} {name}[{count}]", self.word(item)));
                 }
-                _ => return Err(format!("{name}: a type that has no translation: {}", text(&of))),
+                _ => return Err(format!("{name}: a type that has no translation: {}", text(&of)).into()),
             },
         };
         Ok(format!("{of} {name}"))
     }
 
     /// `name: type` of a list; nothing of a comment or of space alone.
-    fn member(&self, tokens: &[Token]) -> Result<String, String> {
+    fn member(&self, tokens: &[Token]) -> Result<String> {
         let colon = tokens.iter().position(|t| t.1 == ":").ok_or_else(|| refuse(tokens))?;
         let name = next(tokens, 0);
         Ok(text(&tokens[..name]) + &self.declared(tokens[name].1, &tokens[colon + 1..])?)
     }
 
-    fn structure(&self, tokens: &[Token], at: usize) -> Result<(String, usize), String> {
+    fn structure(&self, tokens: &[Token], at: usize) -> Result<(String, usize)> {
         let open = find(tokens, at, "{")?;
         let close = closing(tokens, open).ok_or_else(|| refuse(&tokens[at..]))?;
         let mut out = text(&tokens[at..=open]);
@@ -132,30 +133,30 @@ impl Writer {
         Ok((out + "\n};", close + 1))
     }
 
-    fn function(&self, tokens: &[Token], at: usize) -> Result<(String, usize), String> {
+    fn function(&self, tokens: &[Token], at: usize) -> Result<(String, usize)> {
         let name = next(tokens, at + 1);
         let open = find(tokens, name, "(")?;
         let close = closing(tokens, open).ok_or_else(|| refuse(&tokens[at..]))?;
         let arrow = next(tokens, close + 1);
         let body = find(tokens, close, "{")?;
         if tokens[arrow].1 != "->" {
-            return Err(format!("{}: a function that returns nothing", tokens[name].1));
+            return Err(format!("{}: a function that returns nothing", tokens[name].1).into());
         }
         let parameters = split(&tokens[open + 1..close]);
         let kept = parameters.into_iter().filter(|p| next(p, 0) < p.len());
         // GLSL has textures with their samplers in them.
         let kept = kept.filter(|p| self.hlsl() || !text(p).ends_with(": sampler"));
-        let kept: Vec<String> = kept.map(|p| self.member(p)).collect::<Result<_, _>>()?;
+        let kept: Vec<String> = kept.map(|p| self.member(p)).collect::<Result<_>>()?;
         let head = self.declared(tokens[name].1, &tokens[arrow + 1..body])?;
         Ok((format!("{head}{} ", listed(&kept)), body))
     }
 
     /// A constant, a variable, or an `override`, which is a macro that may be defined before.
-    fn variable(&self, tokens: &[Token], at: usize) -> Result<(String, usize), String> {
+    fn variable(&self, tokens: &[Token], at: usize) -> Result<(String, usize)> {
         let name = next(tokens, at + 1);
         let colon = next(tokens, name + 1);
         if tokens.get(colon).is_none_or(|t| t.1 != ":") {
-            return Err(format!("{}: states no type", tokens[name].1));
+            return Err(format!("{}: states no type", tokens[name].1).into());
         }
         let end = find(tokens, colon, ";")?;
         let equals = (colon..end).find(|&k| tokens[k].1 == "=").unwrap_or(end);
@@ -174,14 +175,14 @@ impl Writer {
         Ok((written, end + 1))
     }
 
-    fn condition(&self, tokens: &[Token], at: usize) -> Result<(String, usize), String> {
+    fn condition(&self, tokens: &[Token], at: usize) -> Result<(String, usize)> {
         let body = find(tokens, at, "{")?;
         let condition = self.all(&tokens[at + 1..body])?;
         Ok((format!("if ({}) ", condition.trim()), body))
     }
 
     /// `@group(0) @binding(n) var name: type;`
-    fn binding(&self, tokens: &[Token], at: usize) -> Result<(String, usize), String> {
+    fn binding(&self, tokens: &[Token], at: usize) -> Result<(String, usize)> {
         let end = find(tokens, at, ";")?;
         let words: Vec<&str> = tokens[at..end].iter().filter(|t| t.0 != Kind::Space).map(|t| t.1).collect();
         let ["@", "group", "(", _, ")", "@", "binding", "(", n, ")", "var", name, ":", of @ ..] = &words[..]
@@ -201,7 +202,7 @@ impl Writer {
     }
 
     /// `array<item, count>(…)`, a value.
-    fn array(&self, tokens: &[Token], at: usize) -> Result<(String, usize), String> {
+    fn array(&self, tokens: &[Token], at: usize) -> Result<(String, usize)> {
         let end = closing(tokens, find(tokens, at, "<")?).ok_or_else(|| refuse(&tokens[at..]))?;
         let parts = split(&tokens[at + 2..end]);
         let [item, count] = parts[..] else { return Err(refuse(&tokens[at..])) };
@@ -209,7 +210,7 @@ impl Writer {
         self.listed_call(&head, tokens, end + 1)
     }
 
-    fn call(&self, tokens: &[Token], at: usize) -> Result<(String, usize), String> {
+    fn call(&self, tokens: &[Token], at: usize) -> Result<(String, usize)> {
         let name = tokens[at].1;
         let open = at + 1;
         let close = closing(tokens, open).ok_or_else(|| refuse(&tokens[at..]))?;
@@ -235,11 +236,11 @@ impl Writer {
     }
 
     /// A call or a constructor as it stands, less its samplers in GLSL. HLSL has lists of members for constructors.
-    fn listed_call(&self, head: &str, tokens: &[Token], open: usize) -> Result<(String, usize), String> {
+    fn listed_call(&self, head: &str, tokens: &[Token], open: usize) -> Result<(String, usize)> {
         let close = closing(tokens, open).ok_or_else(|| refuse(&tokens[open..]))?;
         let arguments = split(&tokens[open + 1..close]);
         let kept = arguments.iter().filter(|a| self.hlsl() || !text(a).trim().ends_with("filtering"));
-        let written: Vec<String> = kept.map(|a| self.all(a)).collect::<Result<_, _>>()?;
+        let written: Vec<String> = kept.map(|a| self.all(a)).collect::<Result<_>>()?;
         let (last, rest) = written.split_last().ok_or_else(|| refuse(&tokens[open..]))?;
         // After a trailing comma there is space alone.
         let inside = match last.trim() {
@@ -261,12 +262,12 @@ fn listed(parameters: &[String]) -> String {
     }
 }
 
-fn find(tokens: &[Token], at: usize, sign: &str) -> Result<usize, String> {
+fn find(tokens: &[Token], at: usize, sign: &str) -> Result<usize> {
     (at..tokens.len()).find(|&k| tokens[k].1 == sign).ok_or_else(|| refuse(&tokens[at..]))
 }
 
-fn refuse(tokens: &[Token]) -> String {
-    format!("no translation of: {}", text(&tokens[..tokens.len().min(12)]).trim())
+fn refuse(tokens: &[Token]) -> Error {
+    Error::Reason(format!("no translation of: {}", text(&tokens[..tokens.len().min(12)]).trim()))
 }
 
 #[cfg(test)]
@@ -341,7 +342,7 @@ mod tests {
             ("if a", "if a"),
         ] {
             for language in [Language::Glsl, Language::Hlsl] {
-                let reason = translate(wgsl, language).unwrap_err();
+                let reason = translate(wgsl, language).unwrap_err().to_string();
                 assert!(reason.contains(named), "{wgsl}: {reason}");
             }
         }

@@ -11,6 +11,7 @@ use crate::files::manifest::{Manifest, Table};
 use crate::files::{Atlas, exr};
 use crate::geometry::Point;
 use std::collections::BTreeMap;
+use std::fmt;
 use std::path::Path;
 use volume::{Plane, Volume};
 
@@ -128,7 +129,7 @@ impl<'a> Source<'a> {
         Ok(source)
     }
 
-    pub(in crate::internals::layout) fn refuse(&self, reason: String) -> Error {
+    pub(in crate::internals::layout) fn refuse(&self, reason: impl fmt::Display) -> Error {
         Error::file(self.bake, reason)
     }
 

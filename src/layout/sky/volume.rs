@@ -1,5 +1,6 @@
 //! Tables in memory: stored samples, interpolated before they are decoded, as a texture unit would.
 
+use crate::error::{Error, Result};
 use crate::files::Atlas;
 use crate::files::manifest::{Encoding, Table};
 use crate::mapping::{Bends, Elek2010, HALVES, Layer, Span, SunCurve, Texel, Views, WINDOW, texel};
@@ -11,20 +12,22 @@ pub(in crate::internals::layout) struct Texels {
 }
 
 impl Texels {
-    pub(in crate::internals::layout) fn new(table: &Table, atlas: &Atlas) -> Result<Self, String> {
+    pub(in crate::internals::layout) fn new(table: &Table, atlas: &Atlas) -> Result<Self> {
         let expected: usize = table.shape.iter().product();
         // The shape was held against the file when the sky was opened.
         let mut values = vec![[0.0; 4]; expected];
         let mut encodings = Vec::new();
         if table.channels.len() > 4 {
-            return Err(format!("{}: more than four channels", table.file));
+            return Err(format!("{}: more than four channels", table.file).into());
         }
         for (k, info) in table.channels.iter().enumerate() {
             let channel = atlas
                 .channel(&info.name)
                 .ok_or_else(|| format!("{}: channel {} is missing", table.file, info.name))?;
             if channel.samples.len() != expected {
-                return Err(format!("{}: {} samples, not {expected}", table.file, channel.samples.len()));
+                return Err(
+                    format!("{}: {} samples, not {expected}", table.file, channel.samples.len()).into()
+                );
             }
             for (n, v) in values.iter_mut().enumerate() {
                 v[k] = channel.samples.get(n);
@@ -67,7 +70,7 @@ impl Texels {
 }
 
 /// The mapping that a table's axes describe.
-fn mapping(table: &Table, size: [usize; 4]) -> Result<Elek2010, String> {
+fn mapping(table: &Table, size: [usize; 4]) -> Result<Elek2010> {
     let constant = |axis: usize, name: &str| {
         let axis = table.axes.get(axis).ok_or_else(|| format!("{}: an axis is missing", table.name))?;
         axis.constants
@@ -90,15 +93,16 @@ fn mapping(table: &Table, size: [usize; 4]) -> Result<Elek2010, String> {
         horizon_power: constant(1, "horizon_power")?,
         layer: layer(|name| constant(0, name).ok()),
     };
-    let span = |axis: Option<usize>| -> Result<Span, String> {
+    let span = |axis: Option<usize>| -> Result<Span> {
         let end = |name: &str| axis.and_then(|k| constant(k, name).ok());
         let (Some(low), Some(high)) = (end(WINDOW[0]), end(WINDOW[1])) else { return Ok(Span::WHOLE) };
-        Span::new(low, high)
-            .ok_or_else(|| format!("{}: {}, {}: must rise between 0 and 1", table.name, WINDOW[0], WINDOW[1]))
+        Span::new(low, high).ok_or_else(|| {
+            Error::Reason(format!("{}: {}, {}: must rise between 0 and 1", table.name, WINDOW[0], WINDOW[1]))
+        })
     };
     let views = if constant(1, HALVES).is_ok_and(|n| n == 1.0) { Views::Sky } else { Views::All };
     Elek2010::of_spans(radii, size, curve, bends, [span(Some(0))?, span(sun)?], views)
-        .ok_or_else(|| format!("{}: sizes {size:?} or radii are out of range", table.name))
+        .ok_or_else(|| Error::Reason(format!("{}: sizes {size:?} or radii are out of range", table.name)))
 }
 
 /// The layer of an altitude axis with these constants.
@@ -133,7 +137,7 @@ impl Place {
 }
 
 impl Volume {
-    pub(crate) fn new(table: &Table, atlas: &Atlas) -> Result<Self, String> {
+    pub(crate) fn new(table: &Table, atlas: &Atlas) -> Result<Self> {
         let size: [usize; 4] =
             table.shape.clone().try_into().map_err(|_| format!("{}: not four axes", table.file))?;
         Ok(Volume { texels: Texels::new(table, atlas)?, mapping: mapping(table, size)? })
@@ -161,7 +165,7 @@ pub(crate) struct Plane {
 }
 
 impl Plane {
-    pub(crate) fn new(table: &Table, atlas: &Atlas) -> Result<Self, String> {
+    pub(crate) fn new(table: &Table, atlas: &Atlas) -> Result<Self> {
         let size = [table.shape.first().copied().unwrap_or(1), table.shape.get(1).copied().unwrap_or(1)];
         let names: Vec<&str> = table.axes.iter().map(|a| a.name.as_str()).collect();
         let mapping = match names[..] {

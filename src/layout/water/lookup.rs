@@ -133,21 +133,21 @@ impl WaterSky {
         name: &str,
         slice: usize,
         pictures: &BTreeMap<String, Atlas>,
-    ) -> std::result::Result<WaterSky, String> {
-        let table = |name: &str| -> std::result::Result<(&Table, Grid), String> {
+    ) -> Result<WaterSky> {
+        let table = |name: &str| -> Result<(&Table, Grid)> {
             let found = manifest.tables.iter().find(|t| t.layout == LAYOUT && t.name == name);
             match (found, pictures.get(name)) {
                 (Some(table), Some(atlas)) => Ok((table, grid(table, atlas)?)),
-                _ => Err(format!("layout {LAYOUT} has no table {name}")),
+                _ => Err(format!("layout {LAYOUT} has no table {name}").into()),
             }
         };
-        let list = |key: &str| -> std::result::Result<Vec<f64>, String> {
+        let list = |key: &str| -> Result<Vec<f64>> {
             let found = manifest.constants.get(key).filter(|v| v.iter().all(|x| x.is_finite()));
-            found.cloned().ok_or(format!("constants.{key} is missing or not finite"))
+            found.cloned().ok_or(format!("constants.{key} is missing or not finite").into())
         };
-        let number = |key: &str| -> std::result::Result<f64, String> {
+        let number = |key: &str| -> Result<f64> {
             let v = list(key)?.first().copied().unwrap_or(0.0);
-            if v > 0.0 { Ok(v) } else { Err(format!("constants.{key}: must be greater than 0")) }
+            if v > 0.0 { Ok(v) } else { Err(format!("constants.{key}: must be greater than 0").into()) }
         };
         let of = |what: &str| format!("water_{name}_{what}");
         let nm = list("four_wavelengths_nm")?;
@@ -159,14 +159,16 @@ impl WaterSky {
             return Err(format!(
                 "constants.{}: must be an albedo for each of the four wavelengths",
                 of("seabed_albedo_at_four")
-            ));
+            )
+            .into());
         }
         let kappa = list(&of("kappa_per_m"))?;
         if kappa.len() != nm.len() || kappa.iter().any(|k| *k < 0.0) {
             return Err(format!(
                 "constants.{}: must be 0 or more, for each of the four wavelengths",
                 of("kappa_per_m")
-            ));
+            )
+            .into());
         }
         let matrix = of("rgb_from_four");
         let rgb = manifest
@@ -322,27 +324,24 @@ impl WaterSky {
 }
 
 /// A constant of an axis, inside its bounds.
-fn constant(
-    table: &Table,
-    axis: usize,
-    name: &str,
-    (low, high): (f64, f64),
-) -> std::result::Result<f64, String> {
+fn constant(table: &Table, axis: usize, name: &str, (low, high): (f64, f64)) -> Result<f64> {
     let found = table.axes.get(axis).and_then(|a| a.constants.get(name)).copied();
     let found = found.ok_or(format!("tables.{}: axis {axis} has no {name}", table.name))?;
     if (low..=high).contains(&found) {
         Ok(found)
     } else {
-        Err(format!("tables.{}.axes.{name} = {found}: must be between {low} and {high}", table.name))
+        Err(format!("tables.{}.axes.{name} = {found}: must be between {low} and {high}", table.name).into())
     }
 }
 
 /// The table, its shape held against the file before it is used.
-fn grid(table: &Table, atlas: &Atlas) -> std::result::Result<Grid, String> {
+fn grid(table: &Table, atlas: &Atlas) -> Result<Grid> {
     let texels = table.shape.iter().try_fold(1usize, |n, &side| n.checked_mul(side));
     let held = atlas.slice_len().checked_mul(atlas.slices);
     if texels.is_none() || texels != held || table.shape.contains(&0) || table.shape.len() > 4 {
-        return Err(format!("tables.{}.shape = {:?} is not that of {}", table.name, table.shape, table.file));
+        return Err(
+            format!("tables.{}.shape = {:?} is not that of {}", table.name, table.shape, table.file).into()
+        );
     }
     let mut size = [1; 4];
     size[..table.shape.len()].copy_from_slice(&table.shape);
