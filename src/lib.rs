@@ -73,7 +73,7 @@ pub use error::{Error, Result};
 pub use files::container::Container;
 pub use files::manifest::Manifest;
 pub use geometry::Point;
-pub use layout::compact::{Design as CompactSettings, Sizes as CompactSizes};
+pub use layout::compact::{CompactSettings, Sizes as CompactSizes};
 pub use layout::settings::{Settings, Solver, Storage};
 pub use layout::sky::{AerosolPhase, Channels, Component, Sky, open as open_sky};
 pub use layout::water::Waters;

@@ -1,6 +1,6 @@
 //! The paper's parameterisation: round trips, ends, and the places where its formulas lose their digits.
 
-use tyndall::internals::mapping::{Bends, Elek2010, Layer, SunCurve, Views, Window};
+use tyndall::internals::mapping::{Elek2010, Layer, SunCurve, Views, Warp, Window};
 
 /// Tiny, Earth-like, thick (Titan-like) and huge shells, m.
 const SHELLS: [(f64, f64); 4] = [(400e3, 460e3), (6371e3, 6436e3), (2575e3, 3175e3), (140e6, 140.3e6)];
@@ -194,7 +194,7 @@ const LAYERS: [Layer; 2] = [Layer::NONE, Layer { share: 0.5, altitude: 40e3, wid
 fn windows_are_pieces(layer: Layer) {
     let shell = [600e3, 800e3];
     let curve = SunCurve::Rational { shift: 0.05, width: 0.13 };
-    let bends = Bends { altitude_bend: 1.5, altitude_power: 1.0, view_power: 1.5, horizon_power: 2.4, layer };
+    let bends = Warp { altitude_bend: 1.5, altitude_power: 1.0, view_power: 1.5, horizon_power: 2.4, layer };
     let window = Window { altitudes: Some([5e3, 60e3]), suns: Some([-3.0, 40.0]), views: Views::Sky };
     let map = Elek2010::windowed(shell, [5, 7, 9, 1], curve, bends, &window).unwrap();
     let sine = |degrees: f64| libm::sin(degrees.to_radians());
@@ -237,7 +237,7 @@ fn a_window_of_all_changes_nothing() {
 
 fn all_changes_nothing(layer: Layer) {
     let curve = SunCurve::HalfAngle { centre: 0.7, width: 0.2 };
-    let bends = Bends { altitude_bend: 1.5, altitude_power: 1.0, view_power: 1.5, horizon_power: 2.4, layer };
+    let bends = Warp { altitude_bend: 1.5, altitude_power: 1.0, view_power: 1.5, horizon_power: 2.4, layer };
     let whole = Elek2010::new(600e3, 800e3, [7, 8, 9, 3]).unwrap().with_curves(curve, bends);
     let map = Elek2010::windowed([600e3, 800e3], [7, 8, 9, 3], curve, bends, &Window::WHOLE).unwrap();
     assert_eq!((whole.axes(), whole.spans()), (map.axes(), map.spans()));

@@ -2,7 +2,7 @@
 
 use super::files::Files;
 use super::versions;
-use crate::colour::weights::Palette;
+use crate::colour::weights::ColourWeights;
 use crate::files::manifest::{Adapted, Colour, GridKind, Manifest, Preset, SCHEMA_VERSION, Wavelengths};
 use crate::layout::compact;
 use crate::layout::settings::Settings;
@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 pub(crate) fn manifest(
     planet: &Planet,
     settings: &Settings,
-    palette: &Palette,
+    palette: &ColourWeights,
     medium: &Medium,
     files: &Files,
 ) -> Manifest {
@@ -39,7 +39,7 @@ pub(crate) fn manifest(
 }
 
 /// The colour space, its white and all matrices of the air.
-pub(crate) fn colour(palette: &Palette) -> Colour {
+pub(crate) fn colour(palette: &ColourWeights) -> Colour {
     let rows = |weights: Vec<[f64; 3]>| {
         (0..3).map(|c| weights.iter().map(|w| w[c]).collect()).collect::<Vec<Vec<f64>>>()
     };
@@ -69,7 +69,7 @@ pub(crate) fn add_waters(manifest: &mut Manifest, waters: &[Water], tables: &Wat
 
 fn constants(
     planet: &Planet,
-    palette: &Palette,
+    palette: &ColourWeights,
     medium: &Medium,
     folded: &[String],
 ) -> BTreeMap<String, Vec<f64>> {
@@ -93,7 +93,7 @@ fn constants(
 }
 
 /// Light of the star: its illuminance, and its irradiance at the wavelengths of the bake.
-pub(crate) fn star(planet: &Planet, palette: &Palette) -> [(String, Vec<f64>); 2] {
+pub(crate) fn star(planet: &Planet, palette: &ColourWeights) -> [(String, Vec<f64>); 2] {
     let irradiance = planet.star.irradiance.at_all(&palette.wavelengths_nm);
     [
         ("star_illuminance_lx".to_string(), vec![palette.star_xyz[1]]),
@@ -103,7 +103,11 @@ pub(crate) fn star(planet: &Planet, palette: &Palette) -> [(String, Vec<f64>); 2
 
 /// What each constituent does where its density is 1, for those who march rays themselves, and its row of the phase
 /// table (of what scatters). Its density is that of the resolved preset.
-fn coefficients(groups: &[Vec<usize>], palette: &Palette, medium: &Medium) -> BTreeMap<String, Vec<f64>> {
+fn coefficients(
+    groups: &[Vec<usize>],
+    palette: &ColourWeights,
+    medium: &Medium,
+) -> BTreeMap<String, Vec<f64>> {
     let mut constants = BTreeMap::new();
     for (k, c) in medium.constituents.iter().enumerate() {
         let key = |what: &str| format!("constituent_{}_{what}", c.name);

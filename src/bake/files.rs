@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::files::manifest::{Encoding, EncodingKind, InContainer, OtherFile, Table};
 use crate::files::{Atlas, Samples, exr};
 use crate::layout::settings::Storage;
-use crate::layout::table_data::Baked;
+use crate::layout::table_data::TableData;
 use half::f16;
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
@@ -33,8 +33,8 @@ pub(crate) struct TableFile {
 
 impl Files {
     /// Encodes tables, in their order.
-    pub(crate) fn encode(baked: &[Baked], storage: &Storage) -> Result<Files> {
-        let encode = |b: &Baked| -> Result<TableFile> {
+    pub(crate) fn encode(baked: &[TableData], storage: &Storage) -> Result<Files> {
+        let encode = |b: &TableData| -> Result<TableFile> {
             let mut atlas = b.atlas();
             if storage.column {
                 atlas.columns = 1;
@@ -60,8 +60,8 @@ impl Files {
     }
 
     /// Tables as they would be in files, without those: for readers in memory.
-    pub(crate) fn unencoded<'a>(baked: impl Iterator<Item = &'a Baked>) -> Files {
-        let one = |b: &Baked| {
+    pub(crate) fn unencoded<'a>(baked: impl Iterator<Item = &'a TableData>) -> Files {
+        let one = |b: &TableData| {
             let atlas = b.atlas();
             TableFile { entry: b.entry(&atlas, String::new()), atlas, bytes: Vec::new(), others: Vec::new() }
         };

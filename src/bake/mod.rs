@@ -2,19 +2,19 @@
 
 mod coarse;
 pub(crate) mod describe;
-mod doubts;
 pub(crate) mod files;
-pub mod inputs;
-mod lights;
+mod golden_vectors;
 pub mod memory;
 pub(crate) mod pictures;
 mod pipeline;
 mod product;
+pub mod provenance;
 pub mod recolour;
 pub mod report;
-mod vectors;
+mod solution_cache;
 pub mod versions;
+mod warnings;
 
-pub use lights::Lights;
 pub use pipeline::{bake, bake_in, check_folded};
 pub use product::Product;
+pub use solution_cache::SolutionCache;

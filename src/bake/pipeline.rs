@@ -1,19 +1,19 @@
 //! The bake from a planet to the bytes of every file.
 
-use super::doubts;
 use super::files::Files;
-use super::lights::Lights;
 use super::product::{IN_MEMORY, Product};
-use super::{coarse, describe, pictures, report, vectors};
+use super::solution_cache::SolutionCache;
+use super::warnings;
+use super::{coarse, describe, golden_vectors, pictures, report};
 use crate::colour::samples as skies;
-use crate::colour::weights::Palette;
+use crate::colour::weights::ColourWeights;
 use crate::error::{Error, Result};
 use crate::files::manifest::Manifest;
 use crate::layout::elek2010::spectral;
 use crate::layout::judge::{self, Truth};
 use crate::layout::settings::Settings;
 use crate::layout::sky::{self, AerosolPhase, Sky};
-use crate::layout::table_data::Baked;
+use crate::layout::table_data::TableData;
 use crate::layout::water::WaterTables;
 use crate::layout::water::lookup::WaterSky;
 use crate::layout::{self, Filled, Ingredients, Layout, MediumKind, compact, elek2010, shader, water};
@@ -34,12 +34,12 @@ const BALANCE_WARNING: f64 = 3e-3;
 /// Bakes a planet. `stage` is called with the name of each stage as it begins. Errors: a medium without meaning,
 /// wavelengths or sizes that do not fit together, tables that cannot be encoded.
 pub fn bake(planet: &Planet, settings: &Settings, stage: &mut dyn FnMut(&str)) -> Result<Product> {
-    bake_in(&Lights::default(), planet, settings, stage)
+    bake_in(&SolutionCache::default(), planet, settings, stage)
 }
 
 /// The same, with the light of bakes before where it is the same. Errors: as [`bake`].
 pub fn bake_in(
-    lights: &Lights,
+    lights: &SolutionCache,
     planet: &Planet,
     settings: &Settings,
     stage: &mut dyn FnMut(&str),
@@ -70,8 +70,8 @@ pub fn bake_in(
     let quality = solved.quality(&palette, &filled, &skies, &files);
     let mut warnings = solved.warnings(&palette, &quality);
 
-    let points = vectors::points(&solved.full, &settings.window);
-    files.extra.extend(skies.all().map(|(layout, sky)| vectors::file(layout.name(), sky, &points)));
+    let points = golden_vectors::points(&solved.full, &settings.window);
+    files.extra.extend(skies.all().map(|(layout, sky)| golden_vectors::file(layout.name(), sky, &points)));
     for (layout, _) in skies.all() {
         files.extra.extend(shader::files(Path::new(IN_MEMORY), &manifest, layout.name())?);
     }
@@ -109,7 +109,7 @@ struct Solved<'a> {
 /// Tables of all layouts, and what goes with them.
 #[derive(Default)]
 struct All {
-    tables: Vec<Baked>,
+    tables: Vec<TableData>,
     counts: Map<String, Value>,
     constants: BTreeMap<String, Vec<f64>>,
     files: Vec<(String, String, Vec<u8>)>,
@@ -127,7 +127,7 @@ impl All {
 
 impl<'a> Solved<'a> {
     fn new(
-        lights: &Lights,
+        lights: &SolutionCache,
         planet: &'a Planet,
         settings: &'a Settings,
         stage: &mut dyn FnMut(&str),
@@ -166,9 +166,9 @@ impl<'a> Solved<'a> {
         [0.0, 1.0].map(|half| skies::sample(light, medium, half, &self.settings.window))
     }
 
-    fn palette(&self, sample: &[skies::Skies; 2]) -> Result<Palette> {
+    fn palette(&self, sample: &[skies::Skies; 2]) -> Result<ColourWeights> {
         let irradiance = &self.planet.star.irradiance;
-        Palette::fit(&self.settings.wavelengths_nm, irradiance, &self.settings.rgb, sample)
+        ColourWeights::fit(&self.settings.wavelengths_nm, irradiance, &self.settings.rgb, sample)
     }
 
     /// The light in a medium, where it was solved.
@@ -179,7 +179,7 @@ impl<'a> Solved<'a> {
         }
     }
 
-    fn fill(&self, palette: &Palette, stage: &mut dyn FnMut(&str)) -> Result<All> {
+    fn fill(&self, palette: &ColourWeights, stage: &mut dyn FnMut(&str)) -> Result<All> {
         let (planet, settings, full, paper) = (self.planet, self.settings, &self.full, &self.paper);
         let mut all = All::default();
         for kind in [MediumKind::Paper, MediumKind::Full] {
@@ -200,7 +200,13 @@ impl<'a> Solved<'a> {
     }
 
     /// The quality report: each layout read back, against direct integration of the media.
-    fn quality(&self, palette: &Palette, filled: &All, skies: &Skies, files: &Files) -> Map<String, Value> {
+    fn quality(
+        &self,
+        palette: &ColourWeights,
+        filled: &All,
+        skies: &Skies,
+        files: &Files,
+    ) -> Map<String, Value> {
         let mut out = Map::new();
         let truth = |medium, light: &Solution| judge::truths(medium, light, &self.settings.window);
         let full = self.full_light.as_ref().map(|light| truth(&self.full, light));
@@ -231,11 +237,11 @@ impl<'a> Solved<'a> {
     }
 
     /// What the preset, the settings and the solver leave in doubt.
-    fn warnings(&self, palette: &Palette, quality: &Map<String, Value>) -> Vec<String> {
+    fn warnings(&self, palette: &ColourWeights, quality: &Map<String, Value>) -> Vec<String> {
         let mut out = self.planet.warnings.clone();
         out.extend(outside_vision(&self.settings.wavelengths_nm));
         out.extend(few_wavelengths(&self.settings.wavelengths_nm));
-        out.extend(doubts::colours(palette));
+        out.extend(warnings::colours(palette));
         out.extend(coarse::sheets(&self.full, self.settings));
         let waters = &self.settings.waters.list;
         out.extend(waters.iter().flat_map(|w| w.warnings.iter().map(|t| format!("{}: {t}", w.name))));
@@ -248,8 +254,8 @@ impl<'a> Solved<'a> {
                 out.push(format!("energy balance of the {key}: {:+.2} % of the light", 100.0 * error));
             }
         }
-        out.extend(doubts::tables(quality));
-        out.extend(doubts::underwater(quality));
+        out.extend(warnings::tables(quality));
+        out.extend(warnings::underwater(quality));
         out
     }
 }
@@ -289,7 +295,13 @@ impl Skies {
     }
 
     /// Adds the errors of the layouts of a medium to a quality report.
-    fn judge(&self, kind: MediumKind, palette: &Palette, truths: &[Truth], out: &mut Map<String, Value>) {
+    fn judge(
+        &self,
+        kind: MediumKind,
+        palette: &ColourWeights,
+        truths: &[Truth],
+        out: &mut Map<String, Value>,
+    ) {
         for (layout, sky) in self.all().filter(|(layout, _)| layout.medium() == kind) {
             out.insert(layout.report_key().into(), layout.judge(sky, palette, truths));
         }

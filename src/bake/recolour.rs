@@ -2,10 +2,10 @@
 //! ratios of radiance and irradiance, which know neither, so that only numbers of the manifest change.
 
 use super::files::{Content, entry};
-use super::{describe, doubts, pictures, report, versions};
+use super::{describe, pictures, report, versions, warnings};
 use crate::colour::samples as skies;
 use crate::colour::samples::Skies;
-use crate::colour::weights::Palette;
+use crate::colour::weights::ColourWeights;
 use crate::error::{Error, Result};
 use crate::files::Atlas;
 use crate::files::manifest::{Manifest, Preset, Tool};
@@ -13,7 +13,7 @@ use crate::layout::compact;
 use crate::layout::shader;
 use crate::layout::sky;
 use crate::preset::Planet;
-use crate::spectrum::{Beholder, OBSERVER_RANGE, Rgb, Spectrum, planck_law};
+use crate::spectrum::{OBSERVER_RANGE, Rgb, Spectrum, StandardObserver, planck_law};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -24,7 +24,7 @@ use std::path::Path;
 pub struct Wanted {
     /// Temperature of a star of the same size and at the same distance, a black body, K.
     pub star_k: Option<f64>,
-    pub beholder: Beholder,
+    pub beholder: StandardObserver,
     pub rgb: Rgb,
 }
 
@@ -68,7 +68,7 @@ pub fn recolour(source: &Source, wanted: &Wanted) -> Result<(Manifest, Vec<Conte
     new.settings = settings(old, wanted);
     new.quality = Value::Object(quality(old, &palette));
     new.warnings = planet.warnings.clone();
-    new.warnings.extend(doubts::colours(&palette));
+    new.warnings.extend(warnings::colours(&palette));
     let mut made = shader::files(source.folder, &new, compact::LAYOUT)?;
     let sky = sky::of_pictures(source.folder, &new, compact::LAYOUT, source.tables)?;
     let (picture, errors) =
@@ -94,7 +94,7 @@ fn black_body(kelvin: f64, angular_radius: f64) -> Result<Spectrum> {
     star.map_err(|reason| Error::Argument(format!("--star {kelvin}: {reason}")))
 }
 
-fn palette(old: &Manifest, planet: &Planet, samples: &[Skies; 2], wanted: &Wanted) -> Result<Palette> {
+fn palette(old: &Manifest, planet: &Planet, samples: &[Skies; 2], wanted: &Wanted) -> Result<ColourWeights> {
     let nm = &old.wavelengths.nm;
     let four = old.constants.get("four_wavelengths_nm");
     let place = |w: &f64| nm.iter().position(|other| other == w);
@@ -103,7 +103,7 @@ fn palette(old: &Manifest, planet: &Planet, samples: &[Skies; 2], wanted: &Wante
     let four = Some(four.ok_or_else(reason)?);
     let [training, held_out] = samples;
     let star = &planet.star.irradiance;
-    Palette::of(nm, star, &wanted.rgb, wanted.beholder, [training, held_out], four)
+    ColourWeights::of(nm, star, &wanted.rgb, wanted.beholder, [training, held_out], four)
 }
 
 /// Those of the source, with what was wanted of it.
@@ -118,7 +118,7 @@ fn settings(old: &Manifest, wanted: &Wanted) -> Value {
 }
 
 /// What the source says of its solver and of radiance holds; of colours, what is found now.
-fn quality(old: &Manifest, palette: &Palette) -> Map<String, Value> {
+fn quality(old: &Manifest, palette: &ColourWeights) -> Map<String, Value> {
     let mut out = Map::new();
     out.insert("colour".into(), report::colours(palette, None));
     for key in ["solver", "compact_against_direct_integration"] {

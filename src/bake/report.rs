@@ -1,6 +1,6 @@
 //! The quality report of a bake, its tables apart: what the solver says of itself, and colours.
 
-use crate::colour::weights::Palette;
+use crate::colour::weights::ColourWeights;
 use crate::layout::judge::{Truth, rgb_of};
 use crate::medium::Medium;
 use crate::quality::{DARK, Distribution, colour_error, digits};
@@ -34,7 +34,7 @@ pub fn solver(medium: &Medium, solution: &Solution) -> Value {
 
 /// Colours of the weights: ΔE2000 on skies held out of their fits, and, where there is a truth to look at, what
 /// four wavelengths lose in each region.
-pub fn colours(palette: &Palette, truths: Option<&[Truth]>) -> Value {
+pub fn colours(palette: &ColourWeights, truths: Option<&[Truth]>) -> Value {
     let mut out = json!({
         "all_wavelengths_delta_e_2000": palette.error.json(),
         "four_wavelengths_delta_e_2000": palette.four_error.json(),
@@ -47,7 +47,7 @@ pub fn colours(palette: &Palette, truths: Option<&[Truth]>) -> Value {
 
 /// What colour loses to the choice of four wavelengths, tables apart, by region of a medium's truth: relative
 /// RGB and ΔE2000, against all wavelengths of the bake.
-fn four_wavelengths(palette: &Palette, truths: &[Truth]) -> Value {
+fn four_wavelengths(palette: &ColourWeights, truths: &[Truth]) -> Value {
     let mut out = Map::new();
     for truth in truths {
         let (mut relative, mut felt) = (Vec::new(), Vec::new());

@@ -6,7 +6,7 @@
 //! and away. Errors are told of lit views by day, where a number means something on every planet.
 
 use crate::algorithm1::Gather;
-use crate::bake::Lights;
+use crate::bake::SolutionCache;
 use crate::error::Result;
 use crate::geometry::Point;
 use crate::geometry::view::View;
@@ -169,10 +169,10 @@ fn henyey_greenstein(g: f64) -> PhaseLaw {
 }
 
 /// Light that cases share, of our tables and of the truth.
-pub type Shared = Arc<Lights>;
+pub type Shared = Arc<SolutionCache>;
 
 /// One of each family, small.
-fn methods(settings: &Settings, lights: &Arc<Lights>) -> Vec<Box<dyn Method>> {
+fn methods(settings: &Settings, lights: &Arc<SolutionCache>) -> Vec<Box<dyn Method>> {
     let baked = |family, layout: &'static dyn Layout, settings: Settings, storage| -> Box<dyn Method> {
         Box::new(BakedTables {
             family,
@@ -302,7 +302,7 @@ pub fn awkward_views(planet: &Planet) -> Vec<Point> {
 }
 
 /// Linear RGB over the star's illuminance.
-fn truth(case: &Case, views: &[Point], lights: &Lights) -> Vec<[f64; 3]> {
+fn truth(case: &Case, views: &[Point], lights: &SolutionCache) -> Vec<[f64; 3]> {
     let (planet, nm) = (&case.planet, grid(case.wavelengths));
     let medium = planet.medium(&nm);
     let tolerance = crate::layout::settings::TOLERANCE;

@@ -6,7 +6,7 @@ use crate::files::{Atlas, Samples};
 use crate::machine::lanes::Lanes;
 use crate::mapping::{Views, Window};
 use crate::medium::Medium;
-use crate::transport::fill::{Painter, RayLight, SunPairs, Wanted};
+use crate::transport::fill::{RayIntegrator, RayLight, SunPairs, Wanted};
 use crate::transport::solve::{Batch, Solution, lowest_sun};
 use std::path::Path;
 
@@ -142,7 +142,7 @@ fn batch_sample(
     groups: &[Vec<usize>],
     lattice: &Lattice,
 ) -> Vec<(Lanes, f64)> {
-    let painter = Painter::new(solution, batch, groups);
+    let painter = RayIntegrator::new(solution, batch, groups);
     let pairs = SunPairs::new(&lattice.suns, &lattice.azimuths);
     let mut light = RayLight::default();
     let mut out = Vec::new();

@@ -5,8 +5,8 @@ use super::samples::Skies;
 use crate::error::Result;
 use crate::quality::digits;
 use crate::spectrum::{
-    Beholder, DEFAULT_RIDGE, Reconstruction, Rgb, RgbMatrix, Spectrum, delta_e_2000_scaled, fit_weights,
-    fit_weights_by, hat_weights_seen_by, multiply, weighted,
+    DEFAULT_RIDGE, Reconstruction, Rgb, RgbMatrix, Spectrum, StandardObserver, delta_e_2000_scaled,
+    fit_weights, fit_weights_by, hat_weights_seen_by, multiply, weighted,
 };
 use serde_json::{Value, json};
 
@@ -17,7 +17,7 @@ const TWILIGHT_SHARE: f64 = 0.05;
 const DAY: f64 = 0.3;
 
 /// Colour weights of a bake, and what they cost.
-pub struct Palette {
+pub struct ColourWeights {
     pub wavelengths_nm: Vec<f64>,
     /// `[wavelength]`: XYZ in cd/m² (683 lm/W) per radiance over solar irradiance of 1/sr.
     pub weights: Vec<[f64; 3]>,
@@ -27,7 +27,7 @@ pub struct Palette {
     pub four_weights: Vec<[f64; 3]>,
     /// To linear RGB.
     pub rgb: RgbMatrix,
-    pub beholder: Beholder,
+    pub beholder: StandardObserver,
     /// ΔE2000 of the weights against the reconstructed spectrum on skies held out of the fit.
     pub error: ColourError,
     pub four_error: ColourError,
@@ -51,7 +51,7 @@ impl ColourError {
     }
 }
 
-impl Palette {
+impl ColourWeights {
     /// Fits on one sample of skies and judges on another. The reference is the log-spline reconstruction of
     /// each spectrum times the star's irradiance at 1 nm. All wavelengths are fitted as CIELAB sees errors; the
     /// four are chosen and fitted for the least error of RGB relative to the sky's own, by day above all.
@@ -61,7 +61,14 @@ impl Palette {
         rgb: &Rgb,
         [training, held_out]: &[Skies; 2],
     ) -> Result<Self> {
-        Palette::of(wavelengths_nm, irradiance, rgb, Beholder::default(), [training, held_out], None)
+        ColourWeights::of(
+            wavelengths_nm,
+            irradiance,
+            rgb,
+            StandardObserver::default(),
+            [training, held_out],
+            None,
+        )
     }
 
     /// The same for any observer, with the four wavelengths that `four` numbers where it is given.
@@ -69,7 +76,7 @@ impl Palette {
         wavelengths_nm: &[f64],
         irradiance: &Spectrum,
         rgb: &Rgb,
-        beholder: Beholder,
+        beholder: StandardObserver,
         [training, held_out]: [&Skies; 2],
         four: Option<Vec<usize>>,
     ) -> Result<Self> {
@@ -94,7 +101,7 @@ impl Palette {
             &hat_weights_seen_by(observer, &few, irradiance),
             DEFAULT_RIDGE,
         )?;
-        Ok(Palette {
+        Ok(ColourWeights {
             error: judge(&weights, &held_out.transfers, &judges),
             four_error: judge(&four_weights, &held_out.at(&four), &judges),
             wavelengths_nm: wavelengths_nm.to_vec(),

@@ -49,7 +49,7 @@ pub struct Args {
     pub adaptation: Adaptation,
     /// Whose colours are meant
     #[arg(long, value_enum, default_value = "cie1931-2deg")]
-    pub observer: Beholder,
+    pub observer: StandardObserver,
     /// Add the ΔE2000 of each spectrum from the first (D65, both scaled so that the first has Y = 0.18)
     #[arg(long)]
     pub difference: bool,

@@ -5,7 +5,7 @@ mod tell;
 mod views;
 
 use super::text;
-use crate::bake::inputs;
+use crate::bake::provenance;
 use crate::error::{Error, Result};
 use crate::files::changes::Change;
 use crate::files::manifest::Manifest;
@@ -116,7 +116,10 @@ pub fn run(args: &Args) -> Result<()> {
 pub fn compare(a: &Path, b: &Path, views: usize) -> Result<Found> {
     let (a, b) = (open(a)?, open(b)?);
     Ok(Found {
-        changes: inputs::differences(&inputs::recorded(&a.manifest), &inputs::recorded(&b.manifest)),
+        changes: provenance::differences(
+            &provenance::recorded(&a.manifest),
+            &provenance::recorded(&b.manifest),
+        ),
         tables: tables::compare(&a, &b)?,
         views: views::compare(&a, &b, views)?,
     })

@@ -10,7 +10,7 @@ use crate::files::manifest::{MANIFEST, Manifest};
 use crate::files::staging::Staging;
 use crate::layout::compact;
 use crate::layout::sky::pictures;
-use crate::spectrum::{Adaptation, Beholder, ColourSpace, Rgb, White};
+use crate::spectrum::{Adaptation, ColourSpace, Rgb, StandardObserver, White};
 use std::path::PathBuf;
 
 /// A bake under another star, for another observer or in another colour space, without solving anything
@@ -34,7 +34,7 @@ pub struct Args {
     pub star: Option<f64>,
     /// Whose colours are meant
     #[arg(long, value_enum, default_value = "cie1931-2deg")]
-    pub observer: Beholder,
+    pub observer: StandardObserver,
     /// Linear RGB space [default: that of the bake]
     #[arg(long, value_parser = space)]
     pub colour_space: Option<ColourSpace>,

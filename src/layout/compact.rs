@@ -11,16 +11,16 @@ mod fill;
 mod layer;
 pub mod lookup;
 
-use super::extinction::{Held, Matter, channels, phase, table};
+use super::extinction::{DepthEncoding, Matter, channels, phase, table};
 use super::judge::{Truth, in_spectra};
 use super::settings::Settings;
 use super::sky::{Sky, Source};
-use super::table_data::{Baked, axes_of, axis, file_order};
+use super::table_data::{TableData, axes_of, axis, file_order};
 use super::{Filled, Ingredients, Layout, MediumKind};
-use crate::colour::weights::Palette;
+use crate::colour::weights::ColourWeights;
 use crate::error::Result;
 use crate::files::manifest::Encoding;
-use crate::mapping::{Bends, Elek2010, Layer, SunCurve, Window};
+use crate::mapping::{Elek2010, Layer, SunCurve, Warp, Window};
 use crate::medium::Medium;
 use crate::transport::fill::Wanted;
 use crate::transport::solve::Solution;
@@ -50,27 +50,12 @@ const MULTIPLE_SUN: SunCurve = SunCurve::HalfAngle { centre: 0.728, width: 0.13 
 /// The paper's view axis spends few texels near the zenith, where light varies with azimuth, and few close over the
 /// horizon, where, from a height, the rays leave the haze. Haze also wants more altitudes near the ground than the
 /// paper has. Light scattered more often varies less with either.
-const SINGLE_BENDS: Bends = Bends {
-    altitude_bend: 1.5,
-    altitude_power: 1.0,
-    view_power: 1.5,
-    horizon_power: 2.4,
-    layer: Layer::NONE,
-};
-const MULTIPLE_BENDS: Bends = Bends {
-    altitude_bend: 1.5,
-    altitude_power: 1.0,
-    view_power: 1.5,
-    horizon_power: 1.5,
-    layer: Layer::NONE,
-};
-const DEPTH_BENDS: Bends = Bends {
-    altitude_bend: 1.0,
-    altitude_power: 1.0,
-    view_power: 1.5,
-    horizon_power: 1.5,
-    layer: Layer::NONE,
-};
+const SINGLE_BENDS: Warp =
+    Warp { altitude_bend: 1.5, altitude_power: 1.0, view_power: 1.5, horizon_power: 2.4, layer: Layer::NONE };
+const MULTIPLE_BENDS: Warp =
+    Warp { altitude_bend: 1.5, altitude_power: 1.0, view_power: 1.5, horizon_power: 1.5, layer: Layer::NONE };
+const DEPTH_BENDS: Warp =
+    Warp { altitude_bend: 1.0, altitude_power: 1.0, view_power: 1.5, horizon_power: 1.5, layer: Layer::NONE };
 
 /// A kind of table over altitude and view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,10 +109,10 @@ pub struct Sizes {
     pub depth: [usize; 2],
 }
 
-impl From<Sizes> for Design {
+impl From<Sizes> for CompactSettings {
     /// Everything, in these sizes.
     fn from(sizes: Sizes) -> Self {
-        Design { sizes, ..Design::default() }
+        CompactSettings { sizes, ..CompactSettings::default() }
     }
 }
 
@@ -139,7 +124,7 @@ impl Default for Sizes {
 
 /// What decides the tables of the layout beside the planet and its light.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Design {
+pub struct CompactSettings {
     pub sizes: Sizes,
     /// Constituents whose light scattered once has no table of its own but is in that of the rest, phase function and
     /// all.
@@ -150,17 +135,17 @@ pub struct Design {
 
 /// A planet and its light, from which the tables of a design are made one by one.
 #[derive(Clone, Copy)]
-pub struct Maker<'a> {
+pub struct CompactBuilder<'a> {
     pub medium: &'a Medium,
     pub solution: &'a Solution,
-    pub palette: &'a Palette,
-    pub design: &'a Design,
+    pub palette: &'a ColourWeights,
+    pub design: &'a CompactSettings,
     pub window: &'a Window,
 }
 
 /// The tables of the layout. Returns them and the number of multiple-scattering values that were not positive
 /// where there is light.
-pub fn tables(maker: &Maker) -> (Vec<Baked>, usize) {
+pub fn tables(maker: &CompactBuilder) -> (Vec<TableData>, usize) {
     let mut out = maker.singles();
     let (multiple, negative) = maker.multiple();
     out.push(multiple);
@@ -170,7 +155,7 @@ pub fn tables(maker: &Maker) -> (Vec<Baked>, usize) {
     (out, negative)
 }
 
-impl Maker<'_> {
+impl CompactBuilder<'_> {
     fn mapping(&self, kind: Kind, size: [usize; 4]) -> Elek2010 {
         mapping(self.medium, kind, size, self.window).expect("sizes are checked with the arguments")
     }
@@ -182,7 +167,7 @@ impl Maker<'_> {
     }
 
     /// A table for each group that has one.
-    pub fn singles(&self) -> Vec<Baked> {
+    pub fn singles(&self) -> Vec<TableData> {
         let (groups, kept) = groups_to_fold(self.medium, &self.design.folded);
         let mapping = self.mapping(Kind::Single, self.design.sizes.single);
         let groups = &groups[..kept];
@@ -201,7 +186,7 @@ impl Maker<'_> {
     }
 
     /// The rest, and the number of its values that were not positive where there is light.
-    pub fn multiple(&self) -> (Baked, usize) {
+    pub fn multiple(&self) -> (TableData, usize) {
         let (groups, kept) = groups_to_fold(self.medium, &self.design.folded);
         let mapping = self.mapping(Kind::Multiple, self.design.sizes.multiple);
         let folded = groups.len() - kept;
@@ -225,12 +210,21 @@ impl Maker<'_> {
     }
 
     /// Optical depth of all and, where some constituents only absorb, of what scatters.
-    pub fn depths(&self) -> Vec<Baked> {
-        let Maker { medium, solution, palette, design, .. } = *self;
+    pub fn depths(&self) -> Vec<TableData> {
+        let CompactBuilder { medium, solution, palette, design, .. } = *self;
         let [altitudes, views] = design.sizes.depth;
         let mapping = self.mapping(Kind::Depth, [altitudes, views, 1, 1]);
         let depth = |which| {
-            table(medium, solution, palette, LAYOUT, &mapping, design.sizes.depth, Held::LogOfMean, which)
+            table(
+                medium,
+                solution,
+                palette,
+                LAYOUT,
+                &mapping,
+                design.sizes.depth,
+                DepthEncoding::LogOfMean,
+                which,
+            )
         };
         let mut out = vec![depth(Matter::All)];
         if self.over() == Over::Scatterers {
@@ -240,12 +234,12 @@ impl Maker<'_> {
     }
 
     /// Diffuse irradiance of the ground, under all suns: the ground that an observer sees has suns of its own.
-    pub fn irradiance(&self) -> Baked {
+    pub fn irradiance(&self) -> TableData {
         irradiance(self.solution, self.palette, &self.mapping(Kind::Multiple, self.design.sizes.multiple))
     }
 
     /// None where nothing scatters.
-    pub fn phase(&self) -> Option<Baked> {
+    pub fn phase(&self) -> Option<TableData> {
         let (groups, _) = groups_to_fold(self.medium, &self.design.folded);
         (!groups.is_empty()).then(|| phase(self.medium, self.palette, LAYOUT, &groups))
     }
@@ -257,8 +251,8 @@ fn encode(
     quantity: &str,
     texels: Vec<[f32; 4]>,
     mapping: &Elek2010,
-    palette: &Palette,
-) -> Baked {
+    palette: &ColourWeights,
+) -> TableData {
     let mut logs: Vec<[f64; 4]> = texels
         .par_iter()
         .map(|t| t.map(|v| if v > 0.0 { libm::log(f64::from(v)) } else { f64::NEG_INFINITY }))
@@ -280,7 +274,7 @@ fn encode(
     for v in logs.iter_mut().flatten() {
         *v = (*v - offset).max(FLOOR);
     }
-    Baked {
+    TableData {
         layout: LAYOUT.into(),
         name,
         axes: axes_of(mapping),
@@ -291,7 +285,7 @@ fn encode(
 }
 
 /// Diffuse irradiance of the ground over solar irradiance, as a logarithm.
-fn irradiance(solution: &Solution, palette: &Palette, mapping: &Elek2010) -> Baked {
+fn irradiance(solution: &Solution, palette: &ColourWeights, mapping: &Elek2010) -> TableData {
     let long = mapping.unwindowed([1, 2, IRRADIANCE_SIZE, 1]).expect("a valid size");
     let texels = (0..IRRADIANCE_SIZE)
         .map(|k| {
@@ -303,7 +297,7 @@ fn irradiance(solution: &Solution, palette: &Palette, mapping: &Elek2010) -> Bak
             texel
         })
         .collect();
-    Baked {
+    TableData {
         layout: LAYOUT.into(),
         name: "irradiance".into(),
         axes: vec![axis(&long.axes()[2])],
@@ -342,7 +336,7 @@ impl Layout for CompactLayout {
     }
 
     fn fill(&self, from: &Ingredients) -> Result<Filled> {
-        let maker = Maker {
+        let maker = CompactBuilder {
             medium: from.full,
             solution: from.solution,
             palette: from.palette,
@@ -363,7 +357,7 @@ impl Layout for CompactLayout {
         "compact_against_direct_integration"
     }
 
-    fn judge(&self, sky: &dyn Sky, palette: &Palette, truths: &[Truth]) -> Value {
+    fn judge(&self, sky: &dyn Sky, palette: &ColourWeights, truths: &[Truth]) -> Value {
         in_spectra(sky, palette, truths)
     }
 

@@ -10,20 +10,20 @@ pub mod spectral;
 
 use super::compact;
 use super::extinction;
-use super::extinction::{Held, Matter, table};
+use super::extinction::{DepthEncoding, Matter, table};
 use super::judge::{Truth, in_rgb};
 use super::settings::{Settings, Solver};
 use super::sky::{AerosolPhase, Sky, Source};
-use super::table_data::{Baked, Channel, axes_of, axis, file_order};
+use super::table_data::{Channel, TableData, axes_of, axis, file_order};
 use super::{Filled, Ingredients, Layout, MediumKind};
-use crate::colour::weights::Palette;
+use crate::colour::weights::ColourWeights;
 use crate::error::Result;
 use crate::files::manifest::{Axis, Encoding};
 use crate::machine::lanes::Lanes;
-use crate::mapping::{Bends, Elek2010, SunCurve, Views, Window};
+use crate::mapping::{Elek2010, SunCurve, Views, Warp, Window};
 use crate::medium::{Medium, Role};
 use crate::transport::Phase;
-use crate::transport::fill::{Painter, RayLight, SunPairs, Wanted};
+use crate::transport::fill::{RayIntegrator, RayLight, SunPairs, Wanted};
 use crate::transport::solve::{Batch, Solution};
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -52,10 +52,10 @@ pub struct Oddities {
 pub fn tables(
     medium: &Medium,
     solution: &Solution,
-    palette: &Palette,
+    palette: &ColourWeights,
     size: [usize; 4],
     window: &Window,
-) -> (Vec<Baked>, Oddities) {
+) -> (Vec<TableData>, Oddities) {
     let mapping = mapping(medium, size, window).expect("sizes are checked with the arguments");
     let texels = fill(medium, solution, palette, &mapping);
     let ambient = ambient(solution, palette, &mapping);
@@ -67,21 +67,21 @@ pub fn tables(
 pub fn finish(
     medium: &Medium,
     solution: &Solution,
-    palette: &Palette,
+    palette: &ColourWeights,
     (mapping, window): (&Elek2010, &Window),
     texels: Vec<[f32; 4]>,
     ambient: Vec<[f64; 3]>,
-) -> (Vec<Baked>, Oddities) {
+) -> (Vec<TableData>, Oddities) {
     let (scattering, oddities) = scattering(texels, solution, palette, mapping);
     let (deep, size) = of_depth(medium, window);
-    let extinction = table(medium, solution, palette, LAYOUT, &deep, size, Held::Plain, Matter::All);
+    let extinction = table(medium, solution, palette, LAYOUT, &deep, size, DepthEncoding::Plain, Matter::All);
     (vec![scattering, extinction, irradiance(ambient, mapping)], oddities)
 }
 
 /// The mapping for a medium; none where a size or the window is out of range.
 pub fn mapping(medium: &Medium, size: [usize; 4], window: &Window) -> Option<Elek2010> {
     let radii = [medium.ground_radius, medium.top_radius];
-    Elek2010::windowed(radii, size, SunCurve::Paper, Bends::PAPER, window)
+    Elek2010::windowed(radii, size, SunCurve::Paper, Warp::PAPER, window)
 }
 
 /// Mapping and size of the extinction texture, as close in a window as without.
@@ -94,7 +94,7 @@ fn of_depth(medium: &Medium, window: &Window) -> (Elek2010, [usize; 2]) {
 }
 
 /// Per texel, in ray order: gas in RGB (cd/m²) and aerosol luminance (cd/m²).
-fn fill(medium: &Medium, solution: &Solution, palette: &Palette, mapping: &Elek2010) -> Vec<[f32; 4]> {
+fn fill(medium: &Medium, solution: &Solution, palette: &ColourWeights, mapping: &Elek2010) -> Vec<[f32; 4]> {
     let [altitudes, views, suns, azimuths] = mapping.size();
     let mu_s: Vec<f64> = (0..suns).map(|k| mapping.mu_s(k)).collect();
     let cosines = mapping.cos_azimuths();
@@ -106,7 +106,7 @@ fn fill(medium: &Medium, solution: &Solution, palette: &Palette, mapping: &Elek2
     let groups: Vec<Vec<usize>> = scatterers.iter().map(|&c| vec![c]).collect();
     let mut texels = vec![[0.0f32; 4]; altitudes * views * kept];
     for batch in &solution.batches {
-        let painter = Painter::new(solution, batch, &groups);
+        let painter = RayIntegrator::new(solution, batch, &groups);
         let weights = BatchWeights::new(palette, batch);
         let last = scatterers.iter().map(|&c| (medium.constituents[c].role, &batch.optics.phase[c]));
         let last: Vec<(Role, &Phase)> = last.collect();
@@ -140,7 +140,7 @@ fn fill(medium: &Medium, solution: &Solution, palette: &Palette, mapping: &Elek2
 struct BatchWeights([Lanes; 4]);
 
 impl BatchWeights {
-    fn new(palette: &Palette, batch: &Batch) -> Self {
+    fn new(palette: &ColourWeights, batch: &Batch) -> Self {
         let range = batch.first..batch.first + batch.optics.count;
         let rgb = palette.rgb_weights();
         let lanes = |f: &dyn Fn(usize) -> f64| Lanes::from_f64(&range.clone().map(f).collect::<Vec<_>>());
@@ -200,7 +200,7 @@ pub(super) fn sums(v: [Lanes; 4]) -> [f32; 4] {
 }
 
 /// Luminance of the direct sunlight (cd/m² sr) at each altitude and sun node.
-fn direct_luminance(solution: &Solution, palette: &Palette, mapping: &Elek2010) -> Vec<f64> {
+fn direct_luminance(solution: &Solution, palette: &ColourWeights, mapping: &Elek2010) -> Vec<f64> {
     let [altitudes, _, suns, _] = mapping.size();
     let mut out = vec![0.0; altitudes * suns];
     for i in 0..altitudes {
@@ -215,9 +215,9 @@ fn direct_luminance(solution: &Solution, palette: &Palette, mapping: &Elek2010) 
 fn scattering(
     mut texels: Vec<[f32; 4]>,
     solution: &Solution,
-    palette: &Palette,
+    palette: &ColourWeights,
     mapping: &Elek2010,
-) -> (Baked, Oddities) {
+) -> (TableData, Oddities) {
     let [_, views, suns, azimuths] = mapping.size();
     let direct = direct_luminance(solution, palette, mapping);
     let mut oddities = Oddities::default();
@@ -247,7 +247,7 @@ fn scattering(
         "1",
     );
     aerosol.encoding = Some(Encoding::linear(1.0));
-    let baked = Baked {
+    let baked = TableData {
         layout: LAYOUT.into(),
         name: "scattering".into(),
         axes: axes_of(mapping),
@@ -274,7 +274,7 @@ pub(super) fn power_of_two(brightest: f64) -> f64 {
 }
 
 /// Diffuse irradiance of the ground against the sun's height, RGB in lx: TA of Algorithm 1.
-fn ambient(solution: &Solution, palette: &Palette, mapping: &Elek2010) -> Vec<[f64; 3]> {
+fn ambient(solution: &Solution, palette: &ColourWeights, mapping: &Elek2010) -> Vec<[f64; 3]> {
     let long = mapping.unwindowed([1, 2, AMBIENT_SIZE, 1]).expect("a valid size");
     let rgb = palette.rgb_weights();
     (0..AMBIENT_SIZE)
@@ -285,13 +285,13 @@ fn ambient(solution: &Solution, palette: &Palette, mapping: &Elek2010) -> Vec<[f
         .collect()
 }
 
-fn irradiance(values: Vec<[f64; 3]>, mapping: &Elek2010) -> Baked {
+fn irradiance(values: Vec<[f64; 3]>, mapping: &Elek2010) -> TableData {
     let axis_of = mapping.unwindowed([1, 2, values.len(), 1]).expect("a valid size");
     let scale = power_of_two(values.iter().flatten().fold(0.0, |a: f64, &b| a.max(b)));
     let sun: Axis = axis(&axis_of.axes()[2]);
     let channel = |c: &str| Channel::new(c, "diffuse irradiance of the ground, linear", "lx");
     let store = |v: f64| (v.max(0.0) * scale) as f32;
-    Baked {
+    TableData {
         layout: LAYOUT.into(),
         name: "irradiance".into(),
         axes: vec![sun],
@@ -351,7 +351,7 @@ impl Layout for Elek2010Layout {
         "elek2010_against_its_own_medium"
     }
 
-    fn judge(&self, sky: &dyn Sky, palette: &Palette, truths: &[Truth]) -> Value {
+    fn judge(&self, sky: &dyn Sky, palette: &ColourWeights, truths: &[Truth]) -> Value {
         in_rgb(sky, palette, truths, AerosolPhase::Isotropic)
     }
 

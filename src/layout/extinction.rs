@@ -4,12 +4,12 @@
 //! colour through any number of constituents, and nothing leaves the gamut, as RGB of T does at sunset.
 
 use super::elek2010::power_of_two;
-use super::table_data::{Baked, Channel, axis};
-use crate::colour::weights::Palette;
+use super::table_data::{Channel, TableData, axis};
+use crate::colour::weights::ColourWeights;
 use crate::files::manifest::{Axis, Encoding};
 use crate::mapping::{Elek2010, Views};
 use crate::medium::Medium;
-use crate::transport::fill::Painter;
+use crate::transport::fill::RayIntegrator;
 use crate::transport::solve::Solution;
 use half::f16;
 use rayon::prelude::*;
@@ -20,7 +20,7 @@ const CHANNELS: [&str; 4] = ["R", "G", "B", "A"];
 
 /// How a table holds optical depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Held {
+pub enum DepthEncoding {
     /// As it is, like the paper's extinction texture.
     Plain,
     /// The logarithm of the ray's mean extinction, τ over its length: it varies little, also where both
@@ -41,13 +41,13 @@ pub enum Matter {
 pub fn table(
     medium: &Medium,
     solution: &Solution,
-    palette: &Palette,
+    palette: &ColourWeights,
     layout: &str,
     mapping: &Elek2010,
     size: [usize; 2],
-    held: Held,
+    held: DepthEncoding,
     matter: Matter,
-) -> Baked {
+) -> TableData {
     let [altitudes, views] = size;
     let mapping = mapping.resized([altitudes, views, 1, 1]).expect("a valid size");
     let mut depths = vec![[0.0f32; 4]; altitudes * views];
@@ -55,27 +55,27 @@ pub fn table(
         .par_chunks_mut(views)
         .enumerate()
         .for_each(|(i, out)| row(solution, palette, &mapping, (held, matter), i, out));
-    let offset = if held == Held::Plain { 0.0 } else { typical(medium, palette) };
-    let scale = if held == Held::Plain { plain_scale(&depths) } else { 1.0 };
+    let offset = if held == DepthEncoding::Plain { 0.0 } else { typical(medium, palette) };
+    let scale = if held == DepthEncoding::Plain { plain_scale(&depths) } else { 1.0 };
     let encode = |v: f32| match held {
-        Held::Plain => v * scale as f32,
-        Held::LogOfMean if v > 0.0 => (libm::log(f64::from(v)) - offset).max(FLOOR) as f32,
-        Held::LogOfMean => FLOOR as f32,
+        DepthEncoding::Plain => v * scale as f32,
+        DepthEncoding::LogOfMean if v > 0.0 => (libm::log(f64::from(v)) - offset).max(FLOOR) as f32,
+        DepthEncoding::LogOfMean => FLOOR as f32,
     };
     // x is altitude, y the view.
     let texels =
         (0..altitudes * views).map(|n| depths[(n % altitudes) * views + n / altitudes].map(encode)).collect();
     let (quantity, unit, encoding) = match held {
-        Held::Plain => {
+        DepthEncoding::Plain => {
             ("optical depth of the ray to the ground or to the top", "1", Encoding::linear(1.0 / scale))
         }
-        Held::LogOfMean => (
+        DepthEncoding::LogOfMean => (
             "optical depth of the ray to the ground or to the top over its length d (of the view axis)",
             "1/m",
             Encoding::log(1.0, offset, FLOOR),
         ),
     };
-    Baked {
+    TableData {
         layout: layout.into(),
         name: if matter == Matter::All { "transmittance".into() } else { "scatterers".into() },
         axes: mapping.axes()[..2].iter().map(axis).collect(),
@@ -94,9 +94,9 @@ fn plain_scale(depths: &[[f32; 4]]) -> f64 {
 
 fn row(
     solution: &Solution,
-    palette: &Palette,
+    palette: &ColourWeights,
     mapping: &Elek2010,
-    (held, matter): (Held, Matter),
+    (held, matter): (DepthEncoding, Matter),
     i: usize,
     out: &mut [[f32; 4]],
 ) {
@@ -104,17 +104,17 @@ fn row(
         Views::All => (out.len() / 2, &[true, false][..]),
         Views::Sky => (out.len(), &[false][..]),
     };
-    let altitude = if held == Held::Plain { mapping.altitude(i) } else { mapping.inner_altitude(i) };
+    let altitude = if held == DepthEncoding::Plain { mapping.altitude(i) } else { mapping.inner_altitude(i) };
     let r = mapping.radii()[0] + altitude;
     for (start, &to_ground) in (0..).step_by(half).zip(halves) {
         let mus: Vec<f64> = (start..start + half).map(|j| mapping.mu(altitude, j).0).collect();
         for batch in &solution.batches {
-            let painter = Painter::new(solution, batch, &[]);
+            let painter = RayIntegrator::new(solution, batch, &[]);
             let depths = painter.depths(r, &mus, to_ground, matter == Matter::Scatterers);
             for ((texel, depth), mu) in out[start..].iter_mut().zip(depths).zip(&mus) {
                 let length = match held {
-                    Held::Plain => 1.0,
-                    Held::LogOfMean => mapping.distance(altitude, *mu, to_ground) as f32,
+                    DepthEncoding::Plain => 1.0,
+                    DepthEncoding::LogOfMean => mapping.distance(altitude, *mu, to_ground) as f32,
                 };
                 for (k, &w) in palette.four.iter().enumerate() {
                     if w >= batch.first && w < batch.first + batch.optics.count {
@@ -127,14 +127,14 @@ fn row(
 }
 
 /// Logarithm of the mean vertical extinction: the middle of what a table holds.
-fn typical(medium: &Medium, palette: &Palette) -> f64 {
+fn typical(medium: &Medium, palette: &ColourWeights) -> f64 {
     let depth = medium.vertical_optical_depth();
     let mean = palette.four.iter().map(|&w| depth[w]).sum::<f64>() / palette.four.len() as f64;
     if mean > 0.0 { libm::log(mean / medium.height()) } else { 0.0 }
 }
 
 /// Up to four channels, one a wavelength.
-pub fn channels(palette: &Palette, quantity: &str, unit: &str) -> Vec<Channel> {
+pub fn channels(palette: &ColourWeights, quantity: &str, unit: &str) -> Vec<Channel> {
     let nm = palette.four_nm();
     nm.iter().zip(CHANNELS).map(|(nm, c)| Channel::new(c, format!("{quantity}, at {nm} nm"), unit)).collect()
 }
@@ -143,7 +143,7 @@ pub fn channels(palette: &Palette, quantity: &str, unit: &str) -> Vec<Channel> {
 pub const PHASE_SIZE: usize = 512;
 
 /// Phase functions at the four wavelengths as natural logarithms, a row for each group of constituents.
-pub fn phase(medium: &Medium, palette: &Palette, layout: &str, groups: &[Vec<usize>]) -> Baked {
+pub fn phase(medium: &Medium, palette: &ColourWeights, layout: &str, groups: &[Vec<usize>]) -> TableData {
     let mut texels = Vec::new();
     for group in groups {
         for k in 0..PHASE_SIZE {
@@ -172,7 +172,7 @@ pub fn phase(medium: &Medium, palette: &Palette, layout: &str, groups: &[Vec<usi
         constants: Default::default(),
         unit: "1".into(),
     };
-    Baked {
+    TableData {
         layout: layout.into(),
         name: "phase".into(),
         axes: vec![angle, row],

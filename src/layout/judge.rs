@@ -1,7 +1,7 @@
 //! Tables against direct integration, on the views of the quality report.
 
 use super::sky::{AerosolPhase, Component, Sky};
-use crate::colour::weights::Palette;
+use crate::colour::weights::ColourWeights;
 use crate::geometry::Point;
 use crate::geometry::view::View;
 use crate::mapping::Window;
@@ -44,7 +44,7 @@ pub fn truths(medium: &Medium, solution: &Solution, window: &Window) -> Vec<Trut
 }
 
 /// Errors of a layout of spectra, by region: relative radiance per wavelength, and as RGB.
-pub fn in_spectra(sky: &dyn Sky, palette: &Palette, truths: &[Truth]) -> Value {
+pub fn in_spectra(sky: &dyn Sky, palette: &ColourWeights, truths: &[Truth]) -> Value {
     let mut out = Map::new();
     for truth in truths {
         let (mut spectral, mut colour) = (Vec::new(), Vec::new());
@@ -63,7 +63,7 @@ pub fn in_spectra(sky: &dyn Sky, palette: &Palette, truths: &[Truth]) -> Value {
 }
 
 /// Errors of a layout in RGB, by region, against a medium's truth.
-pub fn in_rgb(sky: &dyn Sky, palette: &Palette, truths: &[Truth], phase: AerosolPhase) -> Value {
+pub fn in_rgb(sky: &dyn Sky, palette: &ColourWeights, truths: &[Truth], phase: AerosolPhase) -> Value {
     let mut out = Map::new();
     for truth in truths {
         let lit = truth.views.iter().filter(|(_, light)| light.iter().any(|&v| v > DARK));
@@ -77,11 +77,11 @@ pub fn in_rgb(sky: &dyn Sky, palette: &Palette, truths: &[Truth], phase: Aerosol
 }
 
 /// Linear RGB over the star's illuminance, of a spectrum.
-fn rgb(palette: &Palette, light: &[f64]) -> [f64; 3] {
+fn rgb(palette: &ColourWeights, light: &[f64]) -> [f64; 3] {
     rgb_of(palette, palette.xyz(light))
 }
 
 /// Linear RGB over the star's illuminance, of XYZ.
-pub fn rgb_of(palette: &Palette, xyz: [f64; 3]) -> [f64; 3] {
+pub fn rgb_of(palette: &ColourWeights, xyz: [f64; 3]) -> [f64; 3] {
     multiply(&palette.rgb.from_xyz, xyz.map(|v| v / palette.star_xyz[1]))
 }

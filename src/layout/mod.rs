@@ -13,7 +13,7 @@ pub mod table_data;
 pub mod three_atmosphere;
 pub mod water;
 
-use crate::colour::weights::Palette;
+use crate::colour::weights::ColourWeights;
 use crate::error::Result;
 use crate::mapping::Elek2010;
 use crate::medium::Medium;
@@ -25,7 +25,7 @@ use settings::Settings;
 use sky::{Sky, Source};
 use std::collections::BTreeMap;
 use std::fmt;
-use table_data::Baked;
+use table_data::TableData;
 
 /// A way to store a sky.
 pub trait Layout: Sync {
@@ -64,7 +64,7 @@ pub trait Layout: Sync {
     fn report_key(&self) -> &'static str;
 
     /// Errors of its tables against the truth of their own medium, by region.
-    fn judge(&self, sky: &dyn Sky, palette: &Palette, truths: &[Truth]) -> Value;
+    fn judge(&self, sky: &dyn Sky, palette: &ColourWeights, truths: &[Truth]) -> Value;
 
     /// What a user can do where its tables miss the day.
     fn remedy(&self) -> &'static str;
@@ -112,13 +112,13 @@ pub struct Ingredients<'a> {
     pub paper: &'a Medium,
     /// The light in the layout's own medium.
     pub solution: &'a Solution,
-    pub palette: &'a Palette,
+    pub palette: &'a ColourWeights,
 }
 
 /// A layout's tables, and what goes with them.
 #[derive(Default)]
 pub struct Filled {
-    pub tables: Vec<Baked>,
+    pub tables: Vec<TableData>,
     /// What was odd about them, for the quality report.
     pub counts: Map<String, Value>,
     /// For the manifest.

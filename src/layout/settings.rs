@@ -1,6 +1,6 @@
 //! What a bake is asked for, apart from the planet: everything that decides its bytes.
 
-use super::compact::{self, CompactLayout, Design, Sizes};
+use super::compact::{self, CompactLayout, CompactSettings, Sizes};
 use super::elek2010::{self, Elek2010Layout};
 use super::water::Waters;
 use super::{Layout, MediumKind};
@@ -41,7 +41,7 @@ impl Storage {
 pub struct Settings {
     pub layouts: Vec<&'static dyn Layout>,
     pub elek2010_size: [usize; 4],
-    pub compact: Design,
+    pub compact: CompactSettings,
     /// The part of altitudes, suns and views that the tables hold, of both layouts.
     pub window: Window,
     pub orders: Orders,
@@ -65,7 +65,7 @@ impl Default for Settings {
         Settings {
             layouts: vec![&Elek2010Layout, &CompactLayout],
             elek2010_size: Elek2010::PAPER_SIZE,
-            compact: Design::default(),
+            compact: CompactSettings::default(),
             window: Window::WHOLE,
             orders: Orders::Converged { tolerance: TOLERANCE },
             wavelengths_nm: crate::spectrum::grid(WAVELENGTHS),

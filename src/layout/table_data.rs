@@ -6,7 +6,7 @@ use crate::files::manifest::{Axis, ChannelInfo, Encoding, Packing, Precision, Ta
 use crate::mapping::{AxisFormula, Elek2010, HALVES, WINDOW};
 
 /// A table of up to four channels, texels in the order x, y, z, w with x fastest (z and w share the slices).
-pub struct Baked {
+pub struct TableData {
     pub layout: String,
     pub name: String,
     pub axes: Vec<Axis>,
@@ -30,7 +30,7 @@ impl Channel {
     }
 }
 
-impl Baked {
+impl TableData {
     /// The picture to store, in half floats: x and y are the first two axes, and slices lie in a grid, but for the
     /// layout three-atmosphere.
     pub fn atlas(&self) -> Atlas {

@@ -16,7 +16,7 @@ mod view;
 use super::array::{Texel, texel};
 use super::layer::Layer;
 use super::sun_curve::SunCurve;
-use super::warp::Bends;
+use super::warp::Warp;
 use super::window::{Span, Views};
 
 pub use axes::{AxisFormula, HALVES, WINDOW};
@@ -42,7 +42,7 @@ pub struct Elek2010 {
     /// Steepness of the sun axis: 2.8 (the paper's) where the axis has the paper's length.
     sun_steepness: f64,
     curve: SunCurve,
-    bends: Bends,
+    bends: Warp,
     size: [usize; 4],
     /// The parts of the axes that the texels hold, and the altitudes (m) and sun cosines at their ends.
     spans: [Span; 2],
@@ -78,7 +78,7 @@ impl Elek2010 {
             mu_s_min,
             sun_steepness,
             curve: SunCurve::Paper,
-            bends: Bends::PAPER,
+            bends: Warp::PAPER,
             size,
             spans: [Span::WHOLE; 2],
             altitudes: [0.0, height],
@@ -88,7 +88,7 @@ impl Elek2010 {
     }
 
     /// The same mapping with another sun axis and bent altitude and view axes.
-    pub fn with_curves(mut self, curve: SunCurve, bends: Bends) -> Self {
+    pub fn with_curves(mut self, curve: SunCurve, bends: Warp) -> Self {
         self.curve = curve;
         self.bends = bends;
         self

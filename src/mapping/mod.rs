@@ -11,5 +11,5 @@ pub use array::{Array, Element, Texel, texel};
 pub use elek2010::{AxisFormula, Elek2010, HALVES, WINDOW};
 pub use layer::Layer;
 pub use sun_curve::SunCurve;
-pub use warp::Bends;
+pub use warp::Warp;
 pub use window::{Span, Views, Window};

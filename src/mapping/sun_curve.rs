@@ -122,7 +122,7 @@ fn half_sine(mu_s: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mapping::{Bends, Elek2010};
+    use crate::mapping::{Elek2010, Warp};
 
     const CURVES: [SunCurve; 3] = [
         SunCurve::Paper,
@@ -135,8 +135,7 @@ mod tests {
     #[test]
     fn coordinates_and_texels_are_inverse() {
         for curve in CURVES {
-            let mapping =
-                Elek2010::new(500e3, 700e3, [4, 6, 33, 3]).unwrap().with_curves(curve, Bends::PAPER);
+            let mapping = Elek2010::new(500e3, 700e3, [4, 6, 33, 3]).unwrap().with_curves(curve, Warp::PAPER);
             for k in 0..33 {
                 let x = mapping.sun_coordinate(mapping.mu_s(k).clamp(mapping.mu_s_min(), 1.0)).unwrap();
                 assert!((x - k as f64 / 32.0).abs() < 1e-12, "{curve:?} {k}: {x}");
@@ -167,7 +166,7 @@ mod tests {
     fn half_angle_is_fine_near_the_zenith() {
         let worst = |curve| {
             let mapping =
-                Elek2010::new(6000e3, 6080e3, [4, 6, 36, 3]).unwrap().with_curves(curve, Bends::PAPER);
+                Elek2010::new(6000e3, 6080e3, [4, 6, 36, 3]).unwrap().with_curves(curve, Warp::PAPER);
             let sine = |mu: f64| (1.0 - mu * mu).sqrt();
             let by_day = (0..35).map(|k| [mapping.mu_s(k), mapping.mu_s(k + 1)]).filter(|m| m[0] > 0.2);
             let errors = by_day.flat_map(|m| {

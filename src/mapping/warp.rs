@@ -4,7 +4,7 @@ use super::layer::Layer;
 
 /// Bends of the axes of Elek & Kmoch 2010 §4.1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bends {
+pub struct Warp {
     /// Above 0, the altitude axis is finer near the ground by the factor 1 + bend, and coarser near the top by
     /// the same.
     pub altitude_bend: f64,
@@ -22,9 +22,9 @@ pub struct Bends {
     pub layer: Layer,
 }
 
-impl Bends {
+impl Warp {
     /// The paper's axes.
-    pub const PAPER: Bends = Bends {
+    pub const PAPER: Warp = Warp {
         altitude_bend: 0.0,
         altitude_power: 1.0,
         view_power: 1.0,
@@ -75,7 +75,7 @@ mod tests {
     use super::*;
     use crate::mapping::{Elek2010, SunCurve};
 
-    const BENT: Bends = Bends {
+    const BENT: Warp = Warp {
         altitude_bend: 1.5,
         altitude_power: 1.0,
         view_power: 1.4,
@@ -89,7 +89,7 @@ mod tests {
     /// by the paper's axes, by bent ones and by those that are finer in a layer.
     #[test]
     fn coordinates_and_texels_are_inverse() {
-        for bends in [Bends::PAPER, BENT, Bends { layer: CLOUD, ..BENT }] {
+        for bends in [Warp::PAPER, BENT, Warp { layer: CLOUD, ..BENT }] {
             let map =
                 Elek2010::new(600e3, 800e3, [13, 24, 5, 9]).unwrap().with_curves(SunCurve::Paper, bends);
             for i in 0..13 {
@@ -112,7 +112,7 @@ mod tests {
     /// third, lie in the lowest tenth.
     #[test]
     fn bent_axes_are_finer_where_they_should_be() {
-        let place = |bends: Bends| {
+        let place = |bends: Warp| {
             let map =
                 Elek2010::new(6000e3, 6080e3, [13, 48, 5, 9]).unwrap().with_curves(SunCurve::Paper, bends);
             let lowest = 6000e3 + 80e3 / 50.0;
@@ -120,7 +120,7 @@ mod tests {
             let view = 23.0 * (1.0 - map.view_coordinate(80e3, mu, false));
             [view, map.altitude_coordinate(8e3)]
         };
-        let (paper, bent) = (place(Bends::PAPER), place(BENT));
+        let (paper, bent) = (place(Warp::PAPER), place(BENT));
         assert!(paper[0] < 0.5 && bent[0] > 2.0, "{paper:?} {bent:?}");
         assert!(paper[1] < 0.35 && bent[1] > 0.5, "{paper:?} {bent:?}");
     }
@@ -130,7 +130,7 @@ mod tests {
     #[test]
     fn a_layer_has_its_share_of_the_altitudes() {
         let within = |layer: Layer| {
-            let bends = Bends { layer, ..BENT };
+            let bends = Warp { layer, ..BENT };
             let map =
                 Elek2010::new(600e3, 800e3, [81, 24, 5, 9]).unwrap().with_curves(SunCurve::Paper, bends);
             (0..81).filter(|&i| (map.altitude(i) - 120e3).abs() < 9e3).count()

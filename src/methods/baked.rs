@@ -1,7 +1,7 @@
 //! Tables of a bake, read as an engine reads them: this project's layouts, and others' tables that its baker fills.
 
 use super::{Family, Method, Prepared, PreparedSky};
-use crate::bake::{Lights, Product, bake_in};
+use crate::bake::{Product, SolutionCache, bake_in};
 use crate::error::{Error, Result};
 use crate::files::manifest::{Encoding, EncodingKind, Manifest, Table};
 use crate::files::{Atlas, Samples, exr};
@@ -26,7 +26,7 @@ pub struct BakedTables {
     pub settings: Settings,
     pub storage: Storage,
     /// Shared with others that may want the same light.
-    pub lights: Arc<Lights>,
+    pub lights: Arc<SolutionCache>,
 }
 
 /// How the samples of tables over four axes are stored.

@@ -2,7 +2,7 @@
 
 use super::{BakedTables, Elek2009, Family, Method, Nishita, OneilMarch, Schafhitzel, Storage};
 use crate::algorithm1::Gather;
-use crate::bake::Lights;
+use crate::bake::SolutionCache;
 use crate::layout::compact::CompactLayout;
 use crate::layout::compact::Sizes;
 use crate::layout::elek2010::Elek2010Layout;
@@ -47,7 +47,7 @@ fn size_of(size: [usize; 4]) -> String {
     size.map(|n| n.to_string()).join("×")
 }
 
-fn algorithm_1(lights: &Arc<Lights>) -> Vec<BakedTables> {
+fn algorithm_1(lights: &Arc<SolutionCache>) -> Vec<BakedTables> {
     let of = |size: [usize; 4], samples, orders, gather, about: &str| BakedTables {
         family: Family::Algorithm1,
         setting: format!("{}, {samples} samples, {orders} orders, {about}", size_of(size)),
@@ -72,7 +72,7 @@ fn algorithm_1(lights: &Arc<Lights>) -> Vec<BakedTables> {
     ]
 }
 
-fn bruneton(lights: &Arc<Lights>) -> Vec<BakedTables> {
+fn bruneton(lights: &Arc<SolutionCache>) -> Vec<BakedTables> {
     let of = |setting: &str, storage| BakedTables {
         family: Family::Bruneton2017,
         setting: setting.into(),
@@ -87,7 +87,7 @@ fn bruneton(lights: &Arc<Lights>) -> Vec<BakedTables> {
     ]
 }
 
-fn elek2010(lights: &Arc<Lights>) -> Vec<BakedTables> {
+fn elek2010(lights: &Arc<SolutionCache>) -> Vec<BakedTables> {
     let of = |size: [usize; 4], orders: Orders, wavelengths: usize, about: &str| BakedTables {
         family: Family::Elek2010,
         setting: format!("{}{about}", size_of(size)),
@@ -117,7 +117,7 @@ fn compact_settings(single: [usize; 4], multiple: [usize; 4]) -> Settings {
     Settings { compact: Sizes { single, multiple, ..Sizes::default() }.into(), ..Settings::default() }
 }
 
-fn compact(lights: &Arc<Lights>) -> Vec<BakedTables> {
+fn compact(lights: &Arc<SolutionCache>) -> Vec<BakedTables> {
     let of = |settings: Settings, about: &str, storage| BakedTables {
         family: Family::Compact,
         setting: format!(

@@ -20,7 +20,7 @@ use crate::mapping::{Array, Elek2010, texel};
 use crate::medium::{Medium, PhaseFunction};
 use crate::preset::Planet;
 use crate::transport::azimuth::midpoint_azimuths;
-use crate::transport::fill::{Painter, RayLight, SunPairs, Wanted};
+use crate::transport::fill::{RayIntegrator, RayLight, SunPairs, Wanted};
 use crate::transport::solve::{Orders, Resolution, Solution};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_1_PI, PI};
@@ -111,7 +111,7 @@ fn fill(medium: &Medium, solution: &Solution, map: &Elek2010, air: &Air) -> Vec<
     let pairs = SunPairs::new(&mu_s, &midpoint_azimuths(AZIMUTHS));
     // Three wavelengths are one batch.
     let batch = &solution.batches[0];
-    let painter = Painter::new(solution, batch, &groups);
+    let painter = RayIntegrator::new(solution, batch, &groups);
     let each = groups.len() * suns;
     let mut rays = vec![[0.0; 3]; altitudes * views * each];
     rays.par_chunks_mut(each.max(1)).enumerate().for_each_init(RayLight::default, |light, (ray, out)| {

@@ -5,18 +5,18 @@
 //! scene, against direct integration of the solver's field at its finest. A second set of views confirms what the first
 //! has chosen, and a third, on which nothing was decided, says how well it does.
 
-mod judge;
-mod lab;
+mod evaluator;
 mod model;
-mod moves;
+mod report;
 mod search;
-mod told;
+mod simplifications;
+mod validation_views;
 mod water_trial;
 mod waters;
 
-pub use judge::Errors;
 pub use model::{Cost, Model};
 pub use search::{Omission, Tried};
+pub use validation_views::Errors;
 pub use waters::{WaterPlan, load as load_waters};
 
 use crate::error::{Error, Result};
@@ -24,9 +24,9 @@ use crate::layout::settings::WAVELENGTHS;
 use crate::preset::{Planet, Scene};
 use crate::spectrum::{Reconstruction, grid};
 use crate::transport::solve::{Orders, Resolution, Solution};
-use judge::{Judge, Truth};
-use lab::Lab;
+use evaluator::Evaluator;
 use search::{Search, front};
+use validation_views::{Truth, ValidationViews};
 
 /// Views of each of the three sets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,13 +91,13 @@ pub fn plan(
     let truth = Truth { medium: &medium, solution: &solution, reconstruction: &reconstruction };
     talk("truth: views");
     let [first, second, third] =
-        [0, 1, 2].map(|k| Judge::new(scene, &truth, effort.views, effort.seed.wrapping_add(k)));
+        [0, 1, 2].map(|k| ValidationViews::new(scene, &truth, effort.views, effort.seed.wrapping_add(k)));
     if first.is_empty() || second.is_empty() || third.is_empty() {
         return Err(Error::Argument(format!("scene {}: none of its views is lit", scene.name)));
     }
-    let mut lab = Lab::new(planet);
+    let mut evaluator = Evaluator::new(planet);
     let share = with_margin(scene.tolerance.share, effort.views);
-    let mut search = Search::new(scene, &first, &mut lab, share, Model::default())?;
+    let mut search = Search::new(scene, &first, &mut evaluator, share, Model::default())?;
     search.windows()?;
     for _ in 0..2 {
         if search.error() > scene.tolerance.most {
@@ -111,21 +111,21 @@ pub fn plan(
     let over = |cost: &Cost| over_budget(scene, cost).is_empty();
     let chosen = confirmed(&mut search, &second)?;
     let (omissions, mut tried) = (search.omissions.clone(), search.tried.clone());
-    if !over(&search.lab.cost(&chosen)?) {
+    if !over(&search.evaluator.cost(&chosen)?) {
         talk("over the budget: looking further");
         search.parts(talk, Some(&over))?;
         tried.clone_from(&search.tried);
     }
     let water_plan = {
-        let (medium, solution, palette) = lab.lit(&chosen)?;
+        let (medium, solution, palette) = evaluator.lit(&chosen)?;
         let sky = waters::Sky { planet, medium, solution, palette: &palette };
         waters::plan(scene, &sky, share, effort.seed, talk)?
     };
     talk("times");
-    let full = measured(&mut lab, &Model::default(), &third, clock)?;
-    let planned = measured(&mut lab, &chosen, &third, clock)?;
+    let full = measured(&mut evaluator, &Model::default(), &third, clock)?;
+    let planned = measured(&mut evaluator, &chosen, &third, clock)?;
     let unmet = unmet(scene, &planned, water_plan.as_ref());
-    let measured = lab.measured;
+    let measured = evaluator.measured;
     Ok(Plan {
         scene: scene.clone(),
         full,
@@ -145,11 +145,11 @@ fn with_margin(share: f64, views: usize) -> f64 {
 }
 
 /// The last model on the way that keeps its promise on views that the search does not know.
-fn confirmed(search: &mut Search, judge: &Judge) -> Result<Model> {
+fn confirmed(search: &mut Search, judge: &ValidationViews) -> Result<Model> {
     let tolerance = search.scene.tolerance;
     while search.history.len() > 1 {
         let model = search.history.last().expect("not empty").clone();
-        if search.lab.measure(&model, judge)?.share_within(tolerance.most) >= tolerance.share {
+        if search.evaluator.measure(&model, judge)?.share_within(tolerance.most) >= tolerance.share {
             break;
         }
         search.history.pop();
@@ -158,12 +158,17 @@ fn confirmed(search: &mut Search, judge: &Judge) -> Result<Model> {
     Ok(search.history.last().expect("never empty").clone())
 }
 
-fn measured(lab: &mut Lab, model: &Model, judge: &Judge, clock: &dyn Fn() -> f64) -> Result<Measured> {
-    lab.forget();
+fn measured(
+    evaluator: &mut Evaluator,
+    model: &Model,
+    judge: &ValidationViews,
+    clock: &dyn Fn() -> f64,
+) -> Result<Measured> {
+    evaluator.forget();
     let start = clock();
-    let cost = lab.cost(model)?;
+    let cost = evaluator.cost(model)?;
     let solved = clock();
-    let sky = lab.sky(model)?;
+    let sky = evaluator.sky(model)?;
     let filled = clock();
     let errors = judge.errors(sky.as_ref());
     Ok(Measured { model: model.clone(), cost, errors, seconds: [solved - start, filled - solved] })
@@ -172,7 +177,7 @@ fn measured(lab: &mut Lab, model: &Model, judge: &Judge, clock: &dyn Fn() -> f64
 fn over_budget(scene: &Scene, cost: &Cost) -> Vec<String> {
     let mut out = Vec::new();
     if let Some(most) = scene.budget.bytes.filter(|most| cost.bytes as f64 > *most) {
-        out.push(format!("{} of texels, over {}", told::bytes(cost.bytes), told::bytes(most as usize)));
+        out.push(format!("{} of texels, over {}", report::bytes(cost.bytes), report::bytes(most as usize)));
     }
     if let Some(most) = scene.budget.fetches.filter(|most| cost.fetches as f64 > *most) {
         out.push(format!("{} fetches a view, over {most}", cost.fetches));

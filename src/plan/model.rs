@@ -2,7 +2,7 @@
 //! look up.
 
 use crate::layout::compact::CompactLayout;
-use crate::layout::compact::{Design, IRRADIANCE_SIZE, groups_to_fold};
+use crate::layout::compact::{CompactSettings, IRRADIANCE_SIZE, groups_to_fold};
 use crate::layout::extinction::PHASE_SIZE;
 use crate::layout::settings::{Settings, TOLERANCE, WAVELENGTHS};
 use crate::mapping::{Views, Window};
@@ -16,7 +16,7 @@ const TEXEL: usize = 8;
 /// What decides tables and light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
-    pub design: Design,
+    pub design: CompactSettings,
     pub window: Window,
     pub orders: Orders,
     pub wavelengths: usize,
@@ -26,7 +26,7 @@ impl Default for Model {
     /// What a bake makes unless told otherwise.
     fn default() -> Self {
         Model {
-            design: Design::default(),
+            design: CompactSettings::default(),
             window: Window::WHOLE,
             orders: Orders::Converged { tolerance: TOLERANCE },
             wavelengths: WAVELENGTHS,

@@ -1,10 +1,10 @@
 //! Greedy search: of all that can be left out, again and again what saves most for what it costs in error, as long as
 //! the tolerance holds.
 
-use super::judge::{Errors, Judge};
-use super::lab::Lab;
+use super::evaluator::Evaluator;
 use super::model::{Cost, Model};
-use super::moves::Move;
+use super::simplifications::Simplification;
+use super::validation_views::{Errors, ValidationViews};
 use crate::error::Result;
 use crate::preset::Scene;
 use serde_json::{Value, json};
@@ -34,8 +34,8 @@ pub struct Tried {
 /// A search under way.
 pub(super) struct Search<'a, 'b> {
     pub scene: &'a Scene,
-    pub judge: &'a Judge,
-    pub lab: &'a mut Lab<'b>,
+    pub judge: &'a ValidationViews,
+    pub evaluator: &'a mut Evaluator<'b>,
     /// Share of the judge's views that must hold: more than promised, for the views that it does not know.
     pub share: f64,
     pub model: Model,
@@ -50,7 +50,7 @@ pub(super) struct Search<'a, 'b> {
 
 /// A move and what is known of it.
 struct Candidate {
-    step: Move,
+    step: Simplification,
     /// Saving over strain when it was last measured, and at which model.
     score: f64,
     measured_at: usize,
@@ -65,18 +65,18 @@ const FREE: f64 = 2e-3;
 impl<'a, 'b> Search<'a, 'b> {
     pub(super) fn new(
         scene: &'a Scene,
-        judge: &'a Judge,
-        lab: &'a mut Lab<'b>,
+        judge: &'a ValidationViews,
+        evaluator: &'a mut Evaluator<'b>,
         share: f64,
         model: Model,
     ) -> Result<Self> {
-        let errors = lab.measure(&model, judge)?;
-        let first = Tried { cost: lab.cost(&model)?, error: errors.at(share) };
+        let errors = evaluator.measure(&model, judge)?;
+        let first = Tried { cost: evaluator.cost(&model)?, error: errors.at(share) };
         let tail = errors.at(beyond(share)).max(TAIL * scene.tolerance.most);
         Ok(Search {
             scene,
             judge,
-            lab,
+            evaluator,
             share,
             tail,
             errors,
@@ -92,10 +92,10 @@ impl<'a, 'b> Search<'a, 'b> {
     }
 
     /// Measures what a step leads to; none where it leads nowhere.
-    fn try_step(&mut self, step: &Move) -> Result<Option<(Model, Errors, Omission)>> {
-        let Some(model) = step.applied(&self.model, self.scene, self.lab)? else { return Ok(None) };
-        let errors = self.lab.measure(&model, self.judge)?;
-        let (before, after) = (self.lab.cost(&self.model)?, self.lab.cost(&model)?);
+    fn try_step(&mut self, step: &Simplification) -> Result<Option<(Model, Errors, Omission)>> {
+        let Some(model) = step.applied(&self.model, self.scene, self.evaluator)? else { return Ok(None) };
+        let errors = self.evaluator.measure(&model, self.judge)?;
+        let (before, after) = (self.evaluator.cost(&self.model)?, self.evaluator.cost(&model)?);
         self.tried.push(Tried { cost: after, error: errors.at(self.share) });
         let omission = Omission {
             what: step.text(self.scene),
@@ -135,7 +135,7 @@ impl<'a, 'b> Search<'a, 'b> {
 
     /// Leaves out what the scene cannot meet, if that does no harm.
     pub(super) fn windows(&mut self) -> Result<()> {
-        for step in Move::windows() {
+        for step in Simplification::windows() {
             let Some((model, errors, omission)) = self.try_step(&step)? else { continue };
             let no_worse = errors.at(self.share) <= 1.1 * self.error() || self.holds(&errors);
             if no_worse { self.take(model, errors, omission) } else { self.keep(omission) }
@@ -155,8 +155,8 @@ impl<'a, 'b> Search<'a, 'b> {
         let sizes = &mut model.design.sizes;
         sizes.single.iter_mut().enumerate().for_each(|(axis, n)| more(n, axis == 1));
         sizes.multiple.iter_mut().enumerate().for_each(|(axis, n)| more(n, axis == 1));
-        let errors = self.lab.measure(&model, self.judge)?;
-        let cost = self.lab.cost(&model)?;
+        let errors = self.evaluator.measure(&model, self.judge)?;
+        let cost = self.evaluator.cost(&model)?;
         self.tried.push(Tried { cost, error: errors.at(self.share) });
         (self.model, self.errors) = (model.clone(), errors);
         self.history = vec![model];
@@ -170,11 +170,11 @@ impl<'a, 'b> Search<'a, 'b> {
         talk: &mut dyn FnMut(&str),
         goal: Option<&dyn Fn(&Cost) -> bool>,
     ) -> Result<()> {
-        let steps = Move::parts(self.lab.medium(&self.model.clone())?);
+        let steps = Simplification::parts(self.evaluator.medium(&self.model.clone())?);
         let fresh = |step| Candidate { step, score: f64::INFINITY, measured_at: usize::MAX };
         let mut candidates: Vec<Candidate> = steps.into_iter().map(fresh).collect();
         let done = |search: &mut Self| -> Result<bool> {
-            let cost = search.lab.cost(&search.model)?;
+            let cost = search.evaluator.cost(&search.model)?;
             Ok(goal.is_some_and(|goal| goal(&cost)))
         };
         while !candidates.is_empty() && !done(self)? {
@@ -212,7 +212,7 @@ impl<'a, 'b> Search<'a, 'b> {
 
     /// Shares of bytes and fetches saved, over the strain that it costs.
     fn score(&mut self, model: &Model, errors: &Errors) -> Result<f64> {
-        let (before, after) = (self.lab.cost(&self.model)?, self.lab.cost(model)?);
+        let (before, after) = (self.evaluator.cost(&self.model)?, self.evaluator.cost(model)?);
         let share = |a: usize, b: usize| (a as f64 - b as f64) / a.max(1) as f64;
         let saved = share(before.bytes, after.bytes) + share(before.fetches, after.fetches);
         let most = self.scene.tolerance.most;
@@ -222,19 +222,19 @@ impl<'a, 'b> Search<'a, 'b> {
     /// Leaves out orders of scattering, where fewer cost the solver less and hold; and says what fewer wavelengths would
     /// cost, which save nothing: sixteen are worked on at once.
     pub(super) fn light(&mut self) -> Result<()> {
-        let all = self.lab.applications(&self.model.clone())?;
+        let all = self.evaluator.applications(&self.model.clone())?;
         for n in [2, 3, 4, 6] {
             if n >= all {
                 break;
             }
-            let Some((model, errors, omission)) = self.try_step(&Move::Orders(n))? else { break };
+            let Some((model, errors, omission)) = self.try_step(&Simplification::Orders(n))? else { break };
             if self.holds(&errors) {
                 self.take(model, errors, omission);
                 break;
             }
             self.keep(omission);
         }
-        if let Some((_, _, omission)) = self.try_step(&Move::Wavelengths(8))? {
+        if let Some((_, _, omission)) = self.try_step(&Simplification::Wavelengths(8))? {
             self.keep(omission);
         }
         Ok(())

@@ -2,7 +2,7 @@
 
 use crate::bake::describe;
 use crate::bake::files::Files;
-use crate::colour::weights::Palette;
+use crate::colour::weights::ColourWeights;
 use crate::error::Result;
 use crate::layout::settings::Settings;
 use crate::layout::sky::Component;
@@ -22,7 +22,7 @@ pub(super) struct Under<'a> {
     pub planet: &'a Planet,
     pub medium: &'a Medium,
     pub solution: &'a Solution,
-    pub palette: &'a Palette,
+    pub palette: &'a ColourWeights,
     pub split: &'a Split,
 }
 

@@ -1,9 +1,9 @@
 //! Waters of a scene: sizes of their tables and orders of scattering, measured as those of the sky are.
 
-use super::judge::Errors;
 use super::search::{Omission, TAIL, beyond};
+use super::validation_views::Errors;
 use super::water_trial::{Trial, Under};
-use crate::colour::weights::Palette;
+use crate::colour::weights::ColourWeights;
 use crate::error::Result;
 use crate::layout::water::lookup::{WaterSky, WaterView};
 use crate::layout::water::{SIZE, Split, bytes};
@@ -52,7 +52,7 @@ pub(super) struct Sky<'a> {
     pub planet: &'a Planet,
     pub medium: &'a Medium,
     pub solution: &'a Solution,
-    pub palette: &'a Palette,
+    pub palette: &'a ColourWeights,
 }
 
 /// A water with its views and the truth about them, in three sets.

@@ -38,7 +38,7 @@ pub use kind::{PresetKind, kind};
 pub use library::{
     parse as read_spectrum, shipped, shipped_names, shipped_scenes, shipped_water_names, shipped_waters,
 };
-pub use phase::{KingFactor, PhaseLaw, Stated};
+pub use phase::{AsymmetryParameter, KingFactor, PhaseLaw};
 pub use planet::{Optics, Planet, Star, Substance};
 pub use rayleigh::{AIR_NUMBER_DENSITY, air_cross_section, air_king_factor, air_refractivity};
 pub use scene::{Budget, Metric, Scene, SceneWater, Tolerance};

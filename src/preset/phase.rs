@@ -12,7 +12,7 @@ pub(super) const MOST_ANGLES: usize = 20_000;
 /// Which asymmetry a preset states for a Cornette–Shanks function, whose parameter is not its mean cosine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Stated {
+pub enum AsymmetryParameter {
     G,
     MeanCosine,
 }
@@ -43,7 +43,7 @@ pub enum PhaseLaw {
         g: Spectrum,
     },
     CornetteShanks {
-        stated: Stated,
+        stated: AsymmetryParameter,
         asymmetry: Spectrum,
     },
     DoubleHenyeyGreenstein {
@@ -76,8 +76,8 @@ impl PhaseLaw {
             PhaseLaw::CornetteShanks { stated, asymmetry } => {
                 let value = asymmetry.at(wavelength_nm);
                 match stated {
-                    Stated::G => PhaseFunction::CornetteShanks { g: value },
-                    Stated::MeanCosine => PhaseFunction::cornette_shanks_of_mean_cosine(value),
+                    AsymmetryParameter::G => PhaseFunction::CornetteShanks { g: value },
+                    AsymmetryParameter::MeanCosine => PhaseFunction::cornette_shanks_of_mean_cosine(value),
                 }
             }
             PhaseLaw::DoubleHenyeyGreenstein { g1, g2, weight } => PhaseFunction::DoubleHenyeyGreenstein {
@@ -155,7 +155,8 @@ mod tests {
     #[test]
     fn stated_asymmetry_is_kept() {
         let law = |stated, v| PhaseLaw::CornetteShanks { stated, asymmetry: Spectrum::constant(v) };
-        let (by_g, by_mean) = (law(Stated::G, 0.76), law(Stated::MeanCosine, 0.809_818_4));
+        let (by_g, by_mean) =
+            (law(AsymmetryParameter::G, 0.76), law(AsymmetryParameter::MeanCosine, 0.809_818_4));
         assert_eq!(by_g.similarity_g(500.0), 0.76);
         assert_eq!(by_mean.similarity_g(500.0), 0.809_818_4);
         assert!((by_g.at(500.0).mean_cosine() - 0.809_82).abs() < 1e-5);

@@ -1,7 +1,7 @@
 //! `phase` of a constituent → [`PhaseLaw`].
 
 use super::bounds::NOT_NEGATIVE;
-use super::phase::{KingFactor, MOST_ANGLES, PhaseLaw, Stated};
+use super::phase::{AsymmetryParameter, KingFactor, MOST_ANGLES, PhaseLaw};
 use super::raw::Raw;
 use super::read_coefficient::co2_ppm;
 use super::read_spectrum::{ASYMMETRY, KING_FACTOR, SHARE, spectrum, wavelengths};
@@ -63,10 +63,10 @@ fn rayleigh(raw: &Raw) -> Result<PhaseLaw> {
     Ok(PhaseLaw::Rayleigh { king_factor })
 }
 
-fn asymmetry(raw: &Raw) -> Result<(Stated, Spectrum)> {
+fn asymmetry(raw: &Raw) -> Result<(AsymmetryParameter, Spectrum)> {
     raw.only(&["kind", "g", "mean_cosine"])?;
     let (which, value) = raw.one_of(&["g", "mean_cosine"])?;
-    Ok(([Stated::G, Stated::MeanCosine][which], spectrum(&value, ASYMMETRY)?))
+    Ok(([AsymmetryParameter::G, AsymmetryParameter::MeanCosine][which], spectrum(&value, ASYMMETRY)?))
 }
 
 /// Relative values over scattering angles (0° straight on … 180°): one list, or one a wavelength.

@@ -17,7 +17,7 @@ pub use colour_space::{ColourSpace, invert, multiply, srgb_decode, srgb_encode, 
 pub use curve::Spectrum;
 pub use lab::{D65, Lab, delta_e_2000, delta_e_2000_scaled, lab_of_xyz};
 pub use nanometres::at_nanometres;
-pub use observer::{Beholder, LUMINOUS_EFFICACY, OBSERVER_RANGE, Observer, chromaticity, y_bar_sum};
+pub use observer::{LUMINOUS_EFFICACY, OBSERVER_RANGE, Observer, StandardObserver, chromaticity, y_bar_sum};
 pub use planck::planck_law;
 pub use reconstruct::Reconstruction;
 pub use spline::LogSpline;

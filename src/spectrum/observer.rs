@@ -15,7 +15,7 @@ const TABLE_1964: &str = include_str!("../../presets/spectra/cie1964-10deg.csv")
 /// Whose colours are meant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
-pub enum Beholder {
+pub enum StandardObserver {
     /// CIE 1931, 2°: the one of all RGB spaces.
     #[default]
     #[cfg_attr(feature = "cli", value(name = "cie1931-2deg"))]
@@ -25,19 +25,19 @@ pub enum Beholder {
     Cie1964,
 }
 
-impl Beholder {
+impl StandardObserver {
     pub fn observer(self) -> &'static Observer {
         match self {
-            Beholder::Cie1931 => Observer::cie1931(),
-            Beholder::Cie1964 => Observer::cie1964(),
+            StandardObserver::Cie1931 => Observer::cie1931(),
+            StandardObserver::Cie1964 => Observer::cie1964(),
         }
     }
 
     /// As in manifests.
     pub fn name(self) -> &'static str {
         match self {
-            Beholder::Cie1931 => "CIE 1931 2 degrees",
-            Beholder::Cie1964 => "CIE 1964 10 degrees",
+            StandardObserver::Cie1931 => "CIE 1931 2 degrees",
+            StandardObserver::Cie1964 => "CIE 1964 10 degrees",
         }
     }
 }

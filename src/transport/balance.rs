@@ -1,6 +1,6 @@
 //! Energy balance of a solved planet: what comes in, goes out and stays.
 
-use super::fill::{Painter, RayLight, SunPairs, Wanted};
+use super::fill::{RayIntegrator, RayLight, SunPairs, Wanted};
 use super::solve::{Batch, Solution, lowest_sun};
 use crate::geometry::directions;
 use crate::machine::lanes::Lanes;
@@ -76,7 +76,7 @@ fn scattered_out(solution: &Solution, batch: &Batch, medium: &Medium) -> Vec<f64
         .filter(|&c| medium.constituents[c].scatters())
         .map(|c| vec![c])
         .collect();
-    let painter = Painter::new(solution, batch, &groups).together();
+    let painter = RayIntegrator::new(solution, batch, &groups).together();
     let suns = suns(lowest_sun(medium));
     let cosines: Vec<f64> = suns.iter().map(|s| s.0).collect();
     let azimuths = azimuths();

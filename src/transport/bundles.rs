@@ -248,7 +248,7 @@ fn sum_products(
 
 /// Room for [`add`], kept from ray to ray.
 #[derive(Default)]
-pub(super) struct Room {
+pub(super) struct BundleScratch {
     coarse: Vec<Lanes>,
     fine: Vec<Lanes>,
 }
@@ -263,7 +263,7 @@ pub(super) fn add(
     axis: &RefinedAxis,
     suns: usize,
     pairs: &Pairs,
-    room: &mut Room,
+    room: &mut BundleScratch,
     out: &mut [Lanes],
 ) {
     let modes = basis.modes;

@@ -20,7 +20,7 @@ pub use super::azimuth::Pairs as SunPairs;
 const REFINEMENT: usize = 4;
 
 /// The light of a batch of wavelengths, by groups of constituents that scatter it last.
-pub struct Painter<'a> {
+pub struct RayIntegrator<'a> {
     solution: &'a Solution,
     batch: &'a Batch,
     axis: RefinedAxis,
@@ -73,11 +73,11 @@ pub struct RayLight {
     pub scatterers_depth: Lanes,
     scratch: Scratch,
     products: Vec<Lanes>,
-    room: bundles::Room,
+    room: bundles::BundleScratch,
     deeper: Vec<Lanes>,
 }
 
-impl<'a> Painter<'a> {
+impl<'a> RayIntegrator<'a> {
     /// `groups`: lists of constituents; those of one group share a phase function.
     pub fn new(solution: &'a Solution, batch: &'a Batch, groups: &[Vec<usize>]) -> Self {
         let mut groups: Vec<Group> =
@@ -96,12 +96,12 @@ impl<'a> Painter<'a> {
             )
             .collect();
         let thick = solution.geometry.levels.is_refined().then(|| Thick::new(solution, batch, &groups));
-        Painter { solution, batch, axis, groups, scatterers, thick, together: false }
+        RayIntegrator { solution, batch, axis, groups, scatterers, thick, together: false }
     }
 
     /// The same, but light scattered more than once counts for the first group, whoever scatters it.
     pub fn together(self) -> Self {
-        Painter { together: true, ..self }
+        RayIntegrator { together: true, ..self }
     }
 
     /// Optical depths of rays from radius `r`, to the ground or to the top: `mus` fall from the zenith (or, to

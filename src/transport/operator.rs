@@ -1,7 +1,7 @@
 //! One order of scattering as a linear operator on the state, and the first order that starts it.
 
 use super::azimuth::{Pairs, SunAxis, midpoint_azimuths};
-use super::bundles::{self, Between, Bundle, Degrees, Part, Room};
+use super::bundles::{self, Between, Bundle, BundleScratch, Degrees, Part};
 use super::column::Shells;
 use super::kernels::{self, FieldGroup, Scratch, SingleGroup};
 use super::levels::Levels;
@@ -145,10 +145,10 @@ impl<'a> Operator<'a> {
     /// Gathers the moments of a radiance, given along each direction of each level for all pairs.
     /// `radiance(level, direction number, room, out)` adds to `out`, one value a pair; of a level, it is asked for all
     /// directions in order, with the same room.
-    pub(super) fn gather<Room: Default>(
+    pub(super) fn gather<Buffers: Default>(
         &self,
         pairs: &Pairs,
-        radiance: impl Fn(usize, usize, &mut Room, &mut [Lanes]) + Sync,
+        radiance: impl Fn(usize, usize, &mut Buffers, &mut [Lanes]) + Sync,
     ) -> State {
         let mut state = self.zero();
         let stride = state.suns * state.terms;
@@ -159,7 +159,7 @@ impl<'a> Operator<'a> {
             .par_chunks_mut(stride)
             .enumerate()
             .map_init(
-                || (Room::default(), vec![Lanes::ZERO; pairs.len()]),
+                || (Buffers::default(), vec![Lanes::ZERO; pairs.len()]),
                 |(room, out), (level, moments)| {
                     let mut flux = vec![Lanes::ZERO; if level == 0 { state.suns } else { 0 }];
                     for (j, (d, _)) in self.geometry.gathers[level].directions.iter().enumerate() {
@@ -216,7 +216,7 @@ impl<'a> Operator<'a> {
         self.gather(
             &self.pairs,
             #[inline(always)]
-            |level, j, (products, range, room): &mut (Vec<Lanes>, Range<usize>, Room), out| {
+            |level, j, (products, range, room): &mut (Vec<Lanes>, Range<usize>, BundleScratch), out| {
                 let rays = &bundles[level];
                 if j == 0 || j == range.end {
                     *range = j..j + bundles::together(&rays[j..]);

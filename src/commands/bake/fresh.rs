@@ -4,7 +4,7 @@ use super::super::text::print;
 use super::super::verify::{Difference, lost_or_changed};
 use super::summary::Outcome;
 use super::{Args, Done};
-use crate::bake::inputs;
+use crate::bake::provenance;
 use crate::error::{Error, Line, Result};
 use crate::files::changes::Change;
 use crate::files::manifest::{MANIFEST, Manifest};
@@ -22,7 +22,8 @@ pub(super) fn stale(folder: &Path, planet: &Planet, settings: &Settings) -> Vec<
         Err(Error::File { reason, .. }) => return vec![difference(MANIFEST, reason)],
         Err(other) => return vec![difference(MANIFEST, other.to_string())],
     };
-    let made_from = inputs::differences(&inputs::recorded(&manifest), &inputs::asked(planet, settings));
+    let made_from =
+        provenance::differences(&provenance::recorded(&manifest), &provenance::asked(planet, settings));
     let mut found: Vec<Difference> = made_from.iter().map(changed).collect();
     if manifest.manifest_blake3.is_empty() || !manifest.seal_holds() {
         found.push(difference(MANIFEST, "was changed since it was baked (another BLAKE3)"));

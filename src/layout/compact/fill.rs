@@ -1,11 +1,11 @@
 //! Texels of the scattering tables: light of every ray under every sun, as a mean source.
 
 use super::edges::{self, Ray};
-use crate::colour::weights::Palette;
+use crate::colour::weights::ColourWeights;
 use crate::machine::lanes::Lanes;
 use crate::mapping::Elek2010;
 use crate::transport::Phase;
-use crate::transport::fill::{Painter, RayLight, SunPairs, Wanted};
+use crate::transport::fill::{RayIntegrator, RayLight, SunPairs, Wanted};
 use crate::transport::solve::Solution;
 use rayon::prelude::*;
 
@@ -20,7 +20,7 @@ pub(super) enum Over {
 /// group, and so does that which the last `folded` groups scatter once, if both are wanted.
 pub(super) fn fill(
     solution: &Solution,
-    palette: &Palette,
+    palette: &ColourWeights,
     mapping: &Elek2010,
     groups: &[Vec<usize>],
     wanted: Wanted,
@@ -43,7 +43,7 @@ pub(super) fn fill(
         if four.is_empty() || count == 0 {
             continue;
         }
-        let painter = Painter::new(solution, batch, groups).together();
+        let painter = RayIntegrator::new(solution, batch, groups).together();
         let ray = |(altitude, (mu, hits_ground)): Ray, light: &mut RayLight, out: &mut [[f32; 4]]| {
             painter.ray(mapping.radii()[0] + altitude, mu, hits_ground, &pairs, wanted, light);
             for group in count - folded..count {

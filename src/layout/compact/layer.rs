@@ -1,6 +1,6 @@
 //! Where the altitude axis of thick air is finer: in the upper side of its cloud.
 
-use crate::mapping::{Bends, Elek2010, Layer, SunCurve, Window};
+use crate::mapping::{Elek2010, Layer, SunCurve, Warp, Window};
 use crate::medium::Medium;
 
 /// Vertical optical depth, the median over wavelengths, up to which axes are left alone.
@@ -21,7 +21,7 @@ const POWER: f64 = 0.7;
 
 /// The bends of thin air as they are. Thick air has a layer of finer altitudes in the upper side of its cloud, and the rest
 /// are spread more by height, the thicker the more.
-pub(super) fn bent(bends: Bends, medium: &Medium) -> Bends {
+pub(super) fn bent(bends: Warp, medium: &Medium) -> Warp {
     let depth = depth_above(medium);
     let whole = depth(0.0);
     if !(whole > THIN && whole.is_finite()) {
@@ -34,7 +34,7 @@ pub(super) fn bent(bends: Bends, medium: &Medium) -> Bends {
     };
     let thick = 1.0 - THIN / whole;
     let width = WIDTH * (at(0.25) - at(0.75)).max(1e-4 * height);
-    Bends {
+    Warp {
         altitude_bend: bends.altitude_bend + BEND * thick,
         altitude_power: 1.0 + POWER * thick,
         layer: Layer { share: SHARE * thick, altitude: at(0.5), width },
@@ -45,7 +45,7 @@ pub(super) fn bent(bends: Bends, medium: &Medium) -> Bends {
 /// The bends of thick air with another altitude bend, so that the nearest of `size` altitudes of a window lies where the
 /// extinction jumps most, mostly the base of a cloud: light has a kink there, which no pair of texels may straddle. Where
 /// nothing jumps, or no bend does it, as they are.
-pub(super) fn with_texel_at_edge(bends: Bends, medium: &Medium, size: usize, window: &Window) -> Bends {
+pub(super) fn with_texel_at_edge(bends: Warp, medium: &Medium, size: usize, window: &Window) -> Warp {
     if bends.layer == Layer::NONE || size < 3 {
         return bends;
     }
@@ -53,7 +53,7 @@ pub(super) fn with_texel_at_edge(bends: Bends, medium: &Medium, size: usize, win
     let radii = [medium.ground_radius, medium.top_radius];
     let altitudes = Window { altitudes: window.altitudes, ..Window::WHOLE };
     let place = |altitude_bend: f64| -> Option<f64> {
-        let bends = Bends { altitude_bend, ..bends };
+        let bends = Warp { altitude_bend, ..bends };
         let mapping = Elek2010::windowed(radii, [size, 2, 2, 2], SunCurve::Paper, bends, &altitudes)?;
         let (index, fraction) = mapping.altitude_texel(edge);
         Some(index as f64 + fraction)
@@ -69,7 +69,7 @@ pub(super) fn with_texel_at_edge(bends: Bends, medium: &Medium, size: usize, win
         let middle = 0.5 * (low + high);
         if place(middle) < Some(wanted) { low = middle } else { high = middle }
     }
-    Bends { altitude_bend: high, ..bends }
+    Warp { altitude_bend: high, ..bends }
 }
 
 /// The altitude (m) about which the extinction changes most, by half at least, within a 400th of the height.
@@ -134,7 +134,7 @@ mod tests {
     use crate::medium::DensityProfile;
     use crate::preset;
 
-    const BENDS: Bends = Bends { altitude_bend: 1.5, ..Bends::PAPER };
+    const BENDS: Warp = Warp { altitude_bend: 1.5, ..Warp::PAPER };
 
     /// Thin air has the axis that it always had. The clouds of venus, whose tops at unit depth lie near 70 km (Crisp
     /// 1986), have a layer there, which ends above the clear air below 48 km.
@@ -144,7 +144,7 @@ mod tests {
         for thin in ["earth", "earth-paper", "earth-sparse10", "mars"] {
             assert_eq!(of(thin), BENDS, "{thin}");
         }
-        let Bends { layer, altitude_power, .. } = of("venus");
+        let Warp { layer, altitude_power, .. } = of("venus");
         assert!((65e3..75e3).contains(&layer.altitude) && layer.altitude - layer.width > 48e3, "{layer:?}");
         assert!(layer.share > 0.35 && altitude_power > 1.5, "{layer:?}");
     }

@@ -2,10 +2,10 @@
 
 use super::{Oddities, finish, mapping};
 use crate::algorithm1;
-use crate::colour::weights::Palette;
+use crate::colour::weights::ColourWeights;
 use crate::error::{Error, Result};
 use crate::layout::settings::{Settings, Solver};
-use crate::layout::table_data::Baked;
+use crate::layout::table_data::TableData;
 use crate::machine::lanes::{Lanes, WIDTH};
 use crate::mapping::Window;
 use crate::medium::Medium;
@@ -15,9 +15,9 @@ use crate::transport::solve::{Orders, Solution};
 pub fn tables(
     medium: &Medium,
     solution: &Solution,
-    palette: &Palette,
+    palette: &ColourWeights,
     settings: &Settings,
-) -> Result<(Vec<Baked>, Oddities)> {
+) -> Result<(Vec<TableData>, Oddities)> {
     let Solver::Literal { samples, gather } = settings.solver else {
         return Err(Error::Argument("these settings ask for no literal solver".into()));
     };

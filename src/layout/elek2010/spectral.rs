@@ -8,7 +8,7 @@ use crate::layout::settings::Settings;
 use crate::mapping::Elek2010;
 use crate::medium::{Medium, Role};
 use crate::preset::Planet;
-use crate::transport::fill::{Painter, RayLight, SunPairs, Wanted};
+use crate::transport::fill::{RayIntegrator, RayLight, SunPairs, Wanted};
 use crate::transport::solve::Solution;
 use rayon::prelude::*;
 
@@ -56,7 +56,7 @@ fn radiance(
     let groups: Vec<Vec<usize>> = members.iter().map(|&c| vec![c]).collect();
     let mut rays = vec![0.0f32; altitudes * views * pairs.len() * count];
     for batch in &solution.batches {
-        let painter = Painter::new(solution, batch, &groups);
+        let painter = RayIntegrator::new(solution, batch, &groups);
         rays.par_chunks_mut(pairs.len() * count).enumerate().for_each_init(
             RayLight::default,
             |light, (ray, out)| {

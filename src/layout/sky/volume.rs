@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::files::Atlas;
 use crate::files::manifest::{Encoding, Table};
-use crate::mapping::{Bends, Elek2010, HALVES, Layer, Span, SunCurve, Texel, Views, WINDOW, texel};
+use crate::mapping::{Elek2010, HALVES, Layer, Span, SunCurve, Texel, Views, WINDOW, Warp, texel};
 
 /// Stored samples of up to four channels, x fastest, and how each channel is decoded.
 pub(in crate::internals::layout) struct Texels {
@@ -86,7 +86,7 @@ fn mapping(table: &Table, size: [usize; 4]) -> Result<Elek2010> {
         (_, Some(centre), Some(width)) => SunCurve::HalfAngle { centre, width },
         _ => SunCurve::Paper,
     };
-    let bends = Bends {
+    let bends = Warp {
         altitude_bend: constant(0, "altitude_bend")?,
         altitude_power: constant(0, "altitude_power").unwrap_or(1.0),
         view_power: constant(1, "view_power")?,

@@ -1,13 +1,13 @@
 //! Light for the tables: along every ray of the mapping, and on level ground at sixteen heights.
 
 use super::Bruneton;
-use crate::colour::weights::Palette;
+use crate::colour::weights::ColourWeights;
 use crate::geometry::directions;
 use crate::layout::elek2010::sums;
 use crate::machine::lanes::Lanes;
 use crate::medium::{Medium, Role};
 use crate::transport::Phase;
-use crate::transport::fill::{Painter, RayLight, SunPairs, Wanted};
+use crate::transport::fill::{RayIntegrator, RayLight, SunPairs, Wanted};
 use crate::transport::solve::{Batch, Solution};
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -27,7 +27,7 @@ pub(super) struct Light {
 pub(super) fn scattering(
     medium: &Medium,
     solution: &Solution,
-    palette: &Palette,
+    palette: &ColourWeights,
     mapping: &Bruneton,
 ) -> Vec<Light> {
     let [altitudes, views, suns, angles] = mapping.size();
@@ -35,7 +35,7 @@ pub(super) fn scattering(
     let each = angles * suns;
     let look = Look::new(medium);
     for batch in &solution.batches {
-        let painter = Painter::new(solution, batch, &look.groups).together();
+        let painter = RayIntegrator::new(solution, batch, &look.groups).together();
         let colours = Colours::new(palette, batch);
         texels.par_chunks_mut(each).enumerate().for_each_init(RayLight::default, |light, (ray, out)| {
             let altitude = mapping.shell().altitude(ray / views);
@@ -108,7 +108,7 @@ impl Look {
 struct Colours([Lanes; 3]);
 
 impl Colours {
-    fn new(palette: &Palette, batch: &Batch) -> Self {
+    fn new(palette: &ColourWeights, batch: &Batch) -> Self {
         let rgb = palette.rgb_weights();
         let range = || batch.first..batch.first + batch.optics.count;
         Colours(std::array::from_fn(|c| Lanes::from_f64(&range().map(|w| rgb[w][c]).collect::<Vec<_>>())))
@@ -135,7 +135,7 @@ pub(super) fn irradiance_mu_s(k: usize) -> f64 {
 
 /// Irradiance of a level surface by the sky alone, RGB in lx, `[altitude][sun]`; heights are even from the ground to
 /// the top, where there is none.
-pub(super) fn irradiance(solution: &Solution, palette: &Palette, medium: &Medium) -> Vec<[f64; 3]> {
+pub(super) fn irradiance(solution: &Solution, palette: &ColourWeights, medium: &Medium) -> Vec<[f64; 3]> {
     let [suns, altitudes] = IRRADIANCE_SIZE;
     let mu_s: Vec<f64> = (0..suns).map(irradiance_mu_s).collect();
     let pairs = SunPairs::new(&mu_s, &crate::transport::azimuth::midpoint_azimuths(AZIMUTHS));
@@ -157,7 +157,7 @@ pub(super) fn irradiance(solution: &Solution, palette: &Palette, medium: &Medium
 
 fn add_sky(
     solution: &Solution,
-    palette: &Palette,
+    palette: &ColourWeights,
     look: &Look,
     r: f64,
     medium: &Medium,
@@ -167,7 +167,7 @@ fn add_sky(
     let mut light = RayLight::default();
     let mut sky = vec![Light::default(); pairs.len()];
     for batch in &solution.batches {
-        let painter = Painter::new(solution, batch, &look.groups).together();
+        let painter = RayIntegrator::new(solution, batch, &look.groups).together();
         let colours = Colours::new(palette, batch);
         for d in directions(r, medium.ground_radius, medium.top_radius, HEIGHTS).iter().filter(|d| d.mu > 0.0)
         {

@@ -17,9 +17,9 @@ mod tables;
 use super::judge::{Truth, in_rgb};
 use super::settings::Settings;
 use super::sky::{AerosolPhase, Sky, Source};
-use super::table_data::Baked;
+use super::table_data::TableData;
 use super::{Filled, Ingredients, Layout, MediumKind};
-use crate::colour::weights::Palette;
+use crate::colour::weights::ColourWeights;
 use crate::error::Result;
 use crate::mapping::Elek2010;
 use crate::medium::Medium;
@@ -41,7 +41,7 @@ pub const LUMINANCE_UNIT: f64 = 75_716.9;
 
 /// The layout's files, and what is odd about them.
 pub struct Tables {
-    pub tables: Vec<Baked>,
+    pub tables: Vec<TableData>,
     /// The text of `parameters.json`.
     pub parameters: String,
     /// Numbers that look-ups need besides, for the manifest.
@@ -54,7 +54,12 @@ pub struct Tables {
 ///
 /// # Errors
 /// A parameter that JSON cannot hold.
-pub fn tables(planet: &Planet, medium: &Medium, solution: &Solution, palette: &Palette) -> Result<Tables> {
+pub fn tables(
+    planet: &Planet,
+    medium: &Medium,
+    solution: &Solution,
+    palette: &ColourWeights,
+) -> Result<Tables> {
     let mapping = Bruneton::new(medium.ground_radius, medium.top_radius, Bruneton::SIZE)
         .expect("a checked shell and the package's sizes");
     let g = phase::best_g(medium, palette, &mapping);
@@ -124,7 +129,7 @@ impl Layout for ThreeAtmosphereLayout {
         "three_atmosphere_against_direct_integration"
     }
 
-    fn judge(&self, sky: &dyn Sky, palette: &Palette, truths: &[Truth]) -> Value {
+    fn judge(&self, sky: &dyn Sky, palette: &ColourWeights, truths: &[Truth]) -> Value {
         in_rgb(sky, palette, truths, AerosolPhase::Preset)
     }
 

@@ -3,7 +3,7 @@
 
 use super::Bruneton;
 use super::LUMINANCE_UNIT;
-use crate::colour::weights::Palette;
+use crate::colour::weights::ColourWeights;
 use crate::error::{Error, Result};
 use crate::medium::{Medium, Role};
 use crate::preset::Planet;
@@ -21,7 +21,7 @@ pub(super) struct Colours {
 }
 
 impl Colours {
-    pub(super) fn new(medium: &Medium, palette: &Palette) -> Self {
+    pub(super) fn new(medium: &Medium, palette: &ColourWeights) -> Self {
         let weights = palette.rgb_weights();
         let one = weighted(&weights, &vec![1.0; weights.len()]);
         let star_lx = multiply(&palette.rgb.from_xyz, palette.star_xyz);
@@ -41,7 +41,7 @@ impl Colours {
 pub(super) fn text(
     planet: &Planet,
     medium: &Medium,
-    palette: &Palette,
+    palette: &ColourWeights,
     mapping: &Bruneton,
     g: f64,
     scale: f64,

@@ -1,7 +1,7 @@
 //! Phase functions that the package's shaders put on, and the g that suits a preset's aerosols best.
 
 use super::Bruneton;
-use crate::colour::weights::Palette;
+use crate::colour::weights::ColourWeights;
 use crate::medium::{Medium, PhaseFunction, Role};
 use std::f64::consts::PI;
 
@@ -22,7 +22,7 @@ const STEP: f64 = 0.01;
 /// The g for which aerosol light, divided by p_M at the nodes of ν, interpolated and multiplied again, is nearest to
 /// the aerosols' mean phase function: least squares of its relative error, even over the scattering angle. 0 without
 /// aerosols. Where they are of Cornette & Shanks with one g, that g (to 0.01).
-pub(super) fn best_g(medium: &Medium, palette: &Palette, mapping: &Bruneton) -> f64 {
+pub(super) fn best_g(medium: &Medium, palette: &ColourWeights, mapping: &Bruneton) -> f64 {
     let mean = |nu: f64| mean_phase(medium, palette, nu);
     if mean(0.0) <= 0.0 {
         return 0.0;
@@ -47,7 +47,7 @@ pub(super) fn best_g(medium: &Medium, palette: &Palette, mapping: &Bruneton) -> 
 }
 
 /// Phase function of all aerosols together, by the light that each scatters in the whole air, as seen by the eye.
-fn mean_phase(medium: &Medium, palette: &Palette, nu: f64) -> f64 {
+fn mean_phase(medium: &Medium, palette: &ColourWeights, nu: f64) -> f64 {
     let (mut sum, mut weights) = (0.0, 0.0);
     for c in medium.constituents.iter().filter(|c| c.role == Role::Aerosol && c.scatters()) {
         let column = c.density.column(0.0, medium.height());

@@ -3,10 +3,10 @@
 use super::Bruneton;
 use super::light::{IRRADIANCE_SIZE, Light, irradiance_mu_s};
 use super::{LAYOUT, LUMINANCE_UNIT, cornette_shanks, rayleigh};
-use crate::colour::weights::Palette;
+use crate::colour::weights::ColourWeights;
 use crate::files::manifest::{Axis, Encoding};
 use crate::layout::elek2010::power_of_two;
-use crate::layout::table_data::{Baked, Channel, axis};
+use crate::layout::table_data::{Channel, TableData, axis};
 use crate::transport::solve::Solution;
 use rayon::prelude::*;
 
@@ -53,13 +53,13 @@ pub(super) fn scale(light: &[Light], sky: &[[f64; 3]], mapping: &Bruneton, g: f6
 /// All tables, and the number of their colours that were outside the gamut.
 pub(super) fn all(
     solution: &Solution,
-    palette: &Palette,
+    palette: &ColourWeights,
     mapping: &Bruneton,
     g: f64,
     scale: f64,
     light: &[Light],
     sky: Vec<[f64; 3]>,
-) -> (Vec<Baked>, usize) {
+) -> (Vec<TableData>, usize) {
     let texels: Vec<[[f64; 3]; 3]> =
         light.par_iter().enumerate().map(|(n, l)| texel(l, phases(mapping, g, n))).collect();
     let negative = texels.iter().flatten().flatten().filter(|v| **v < 0.0).count();
@@ -107,16 +107,16 @@ fn table(
     axes: Vec<Axis>,
     encoding: Encoding,
     texels: Vec<[f32; 4]>,
-) -> Baked {
+) -> TableData {
     let channel = |c: &str| Channel::new(c, format!("{quantity}, linear"), unit);
     let mut alpha = Channel::new("A", "nothing: 1", "1");
     alpha.encoding = Some(Encoding::linear(1.0));
     let channels = vec![channel("R"), channel("G"), channel("B"), alpha];
-    Baked { layout: LAYOUT.into(), name: name.into(), axes, channels, encoding, texels }
+    TableData { layout: LAYOUT.into(), name: name.into(), axes, channels, encoding, texels }
 }
 
 /// Transmittance to the top of rays that leave through it, of the star's light as RGB.
-fn transmittance(solution: &Solution, palette: &Palette, mapping: &Bruneton) -> Baked {
+fn transmittance(solution: &Solution, palette: &ColourWeights, mapping: &Bruneton) -> TableData {
     let [views, altitudes] = TRANSMITTANCE_SIZE;
     let fine = mapping.shell().resized([altitudes, 2 * views, 2, 2]).expect("a valid size");
     let weights = palette.rgb_weights();
@@ -152,7 +152,7 @@ fn transmittance(solution: &Solution, palette: &Palette, mapping: &Bruneton) -> 
     )
 }
 
-fn irradiance(texels: &[[f32; 4]], mapping: &Bruneton, scale: f64) -> Baked {
+fn irradiance(texels: &[[f32; 4]], mapping: &Bruneton, scale: f64) -> TableData {
     let [suns, altitudes] = IRRADIANCE_SIZE;
     let [ground, top] = mapping.shell().radii();
     let named = |name: &str, size: usize, formula: &str, constants: &[(&str, f64)], unit: &str| Axis {

@@ -2,7 +2,7 @@
 
 use super::skylight::Split;
 use super::slabs;
-use crate::colour::weights::{ColourError, Palette, judge};
+use crate::colour::weights::{ColourError, ColourWeights, judge};
 use crate::error::Result;
 use crate::medium::Medium;
 use crate::preset::{Planet, Water};
@@ -62,7 +62,7 @@ pub(crate) fn fit(
     medium: &Medium,
     solution: &Solution,
     split: &Split,
-    palette: &Palette,
+    palette: &ColourWeights,
 ) -> Result<(Vec<Vec<f64>>, [ColourError; 2])> {
     let reconstruction = Reconstruction::new(&palette.wavelengths_nm, &planet.star.irradiance);
     let [training, held_out] = [0, 1].map(|half| spectra(water, medium, solution, split, half));

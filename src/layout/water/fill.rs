@@ -3,7 +3,7 @@
 use super::shared::{self, baked, channels_of};
 use super::{EvenCosine, WaterAxes};
 use super::{LAYOUT, Waters};
-use crate::layout::table_data::{Baked, Channel};
+use crate::layout::table_data::{Channel, TableData};
 use crate::medium::WaterMedium;
 use crate::preset::Water;
 use crate::transport::slab::{Angles, Dome, Layer, Slab};
@@ -55,7 +55,7 @@ struct Column {
 }
 
 /// W, S, U, W_b, and S_b with r: see the module's formula.
-pub(crate) fn tables(water: &Water, media: &WaterMedium, slabs: &[Slab], waters: &Waters) -> Vec<Baked> {
+pub(crate) fn tables(water: &Water, media: &WaterMedium, slabs: &[Slab], waters: &Waters) -> Vec<TableData> {
     let [depths, views, suns] = waters.size;
     let axes = axes(water, media, slabs);
     let inside = |slab: &Slab, mu: f64| slab.surface.cosine_in_water(mu).max(LEAST_COSINE);

@@ -23,8 +23,8 @@ mod underwater;
 mod within;
 
 use super::settings::Settings;
-use super::table_data::Baked;
-use crate::colour::weights::Palette;
+use super::table_data::TableData;
+use crate::colour::weights::ColourWeights;
 use crate::error::Result;
 use crate::medium::{Medium, WaterMedium};
 use crate::preset::{Planet, Water};
@@ -66,7 +66,7 @@ impl Default for Waters {
 
 /// Tables of all waters, and what the manifest has to say beside them.
 pub struct WaterTables {
-    pub tables: Vec<Baked>,
+    pub tables: Vec<TableData>,
     pub matrices: BTreeMap<String, Vec<Vec<f64>>>,
     pub constants: BTreeMap<String, Vec<f64>>,
     /// ΔE2000 of the colours of four wavelengths, by water: with the weights of the sky, and with its own.
@@ -95,7 +95,7 @@ pub fn tables(
     settings: &Settings,
     medium: &Medium,
     solution: &Solution,
-    palette: &Palette,
+    palette: &ColourWeights,
 ) -> Result<WaterTables> {
     let (nm, waters) = (palette.four_nm(), &settings.waters);
     let split = Split::new(medium, solution);

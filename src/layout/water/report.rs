@@ -3,7 +3,7 @@
 use super::lookup::{WaterSky, WaterView};
 use super::within::Judge;
 use super::{FINE, Skylight, WaterTables, slabs};
-use crate::colour::weights::Palette;
+use crate::colour::weights::ColourWeights;
 use crate::layout::sky::Component;
 use crate::medium::Medium;
 use crate::preset::Water;
@@ -33,7 +33,13 @@ struct Sun {
 }
 
 impl Sun {
-    fn new(medium: &Medium, solution: &Solution, palette: &Palette, tables: &WaterTables, mu_s: f64) -> Sun {
+    fn new(
+        medium: &Medium,
+        solution: &Solution,
+        palette: &ColourWeights,
+        tables: &WaterTables,
+        mu_s: f64,
+    ) -> Sun {
         let (direct, sky) =
             (solution.sun_transmittance(medium.ground_radius, mu_s), solution.ground_irradiance(mu_s));
         let whole = Skylight::new(medium, solution, mu_s, FINE);
@@ -57,7 +63,7 @@ pub fn report(
     waters: &[Water],
     medium: &Medium,
     solution: &Solution,
-    palette: &Palette,
+    palette: &ColourWeights,
     tables: &WaterTables,
     skies: &[WaterSky],
     orders: WaterOrders,

@@ -4,9 +4,9 @@
 use super::EvenCosine;
 use super::LAYOUT;
 use super::skylight::Split;
-use crate::colour::weights::Palette;
+use crate::colour::weights::ColourWeights;
 use crate::files::manifest::{Axis, Encoding};
-use crate::layout::table_data::{Baked, Channel};
+use crate::layout::table_data::{Channel, TableData};
 use crate::medium::Medium;
 use crate::preset::Water;
 use crate::transport::slab::{Surface, fresnel, lazanyi_szirmay_kalos};
@@ -29,9 +29,9 @@ pub(crate) fn tables(
     waters: &[Water],
     medium: &Medium,
     solution: &Solution,
-    palette: &Palette,
+    palette: &ColourWeights,
     split: &Split,
-) -> Vec<Baked> {
+) -> Vec<TableData> {
     vec![light(medium, solution, palette, split), surfaces(waters, palette)]
 }
 
@@ -40,7 +40,7 @@ pub(crate) fn listed(name: &str, size: usize, formula: String) -> Axis {
 }
 
 /// Irradiance of a horizontal surface on the ground by the sun and by the sky.
-fn light(medium: &Medium, solution: &Solution, palette: &Palette, split: &Split) -> Baked {
+fn light(medium: &Medium, solution: &Solution, palette: &ColourWeights, split: &Split) -> TableData {
     let sun = EvenCosine { name: "sun", least: lowest_sun(medium) };
     let values: Vec<[Vec<f64>; 3]> = (0..SUNS)
         .map(|k| {
@@ -65,7 +65,7 @@ fn light(medium: &Medium, solution: &Solution, palette: &Palette, split: &Split)
 }
 
 /// Fresnel's reflectance, a slice a water.
-fn surfaces(waters: &[Water], palette: &Palette) -> Baked {
+fn surfaces(waters: &[Water], palette: &ColourWeights) -> TableData {
     let nm = palette.four_nm();
     let indices: Vec<Vec<f64>> = waters.iter().map(|w| w.refractive_index.at_all(&nm)).collect();
     let angle = EvenCosine { name: "angle", least: 0.0 };
@@ -106,7 +106,7 @@ pub(crate) fn baked(
     axes: Vec<Axis>,
     mut channels: Vec<Channel>,
     value: impl Fn([usize; 3], usize) -> f64,
-) -> Baked {
+) -> TableData {
     let size = |k: usize| axes.get(k).map_or(1, |a: &Axis| a.size);
     let [x, y, z] = [size(0), size(1), size(2)];
     let mut texels = vec![[0.0f32; 4]; x * y * z];
@@ -119,7 +119,7 @@ pub(crate) fn baked(
         }
         channel.encoding = Some(Encoding::linear(1.0 / scale));
     }
-    Baked { layout: layout.into(), name, axes, channels, encoding: Encoding::linear(1.0), texels }
+    TableData { layout: layout.into(), name, axes, channels, encoding: Encoding::linear(1.0), texels }
 }
 
 /// The power of two that brings the largest value just below what halves hold comfortably.

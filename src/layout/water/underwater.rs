@@ -5,7 +5,7 @@ use super::LAYOUT;
 use super::fill::{LEAST_COSINE, SUN, axes, plain};
 use super::shared::{self, baked, channels_of};
 use crate::files::manifest::Axis;
-use crate::layout::table_data::Baked;
+use crate::layout::table_data::TableData;
 use crate::medium::WaterMedium;
 use crate::preset::Water;
 use crate::transport::slab::{Angles, Dome, Layer, Slab, WaterOrders};
@@ -19,7 +19,12 @@ pub(super) const VIEW: EvenCosine = EvenCosine { name: "view", least: -1.0 };
 
 /// `<name>_underwater`, `…_sky` and `…_seabed`: radiance in the water, the sun's disc left out; slices are
 /// observer · suns + sun, and observer · parts + part of the sky.
-pub(super) fn tables(water: &Water, media: &WaterMedium, slabs: &[Slab], orders: WaterOrders) -> Vec<Baked> {
+pub(super) fn tables(
+    water: &Water,
+    media: &WaterMedium,
+    slabs: &[Slab],
+    orders: WaterOrders,
+) -> Vec<TableData> {
     let [depths, views, suns, observers] = SIZE;
     let axes = axes(water, media, slabs);
     let light: Vec<Vec<[Vec<f64>; 3]>> = slabs

@@ -2,7 +2,7 @@
 
 use super::WaterTables;
 use super::lookup::{WaterSky, WaterView};
-use crate::colour::weights::Palette;
+use crate::colour::weights::ColourWeights;
 use crate::layout::sky::Component;
 use crate::medium::{Medium, WaterMedium};
 use crate::preset::Water;
@@ -24,7 +24,7 @@ const SEED: u32 = 3;
 pub(super) struct Judge<'a> {
     pub medium: &'a Medium,
     pub solution: &'a Solution,
-    pub palette: &'a Palette,
+    pub palette: &'a ColourWeights,
     pub tables: &'a WaterTables,
     pub orders: WaterOrders,
 }

@@ -2,7 +2,7 @@
 
 use super::Elek2010;
 use crate::mapping::sun_curve::SunCurve;
-use crate::mapping::warp::Bends;
+use crate::mapping::warp::Warp;
 use crate::mapping::window::{Span, Views, Window};
 
 impl Elek2010 {
@@ -13,7 +13,7 @@ impl Elek2010 {
         [ground_radius, top_radius]: [f64; 2],
         size: [usize; 4],
         curve: SunCurve,
-        bends: Bends,
+        bends: Warp,
         window: &Window,
     ) -> Option<Self> {
         let mut out = Elek2010::whole(ground_radius, top_radius, size)?;
@@ -58,7 +58,7 @@ impl Elek2010 {
         [ground_radius, top_radius]: [f64; 2],
         size: [usize; 4],
         curve: SunCurve,
-        bends: Bends,
+        bends: Warp,
         spans: [Span; 2],
         views: Views,
     ) -> Option<Self> {

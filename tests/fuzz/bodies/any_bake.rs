@@ -7,7 +7,7 @@ use super::{good, presets, refused};
 use clap::{Args as _, Command, FromArgMatches};
 use serde_json::{Value, json};
 use tyndall::Error;
-use tyndall::internals::bake::{Lights, Product, bake_in};
+use tyndall::internals::bake::{Product, SolutionCache, bake_in};
 use tyndall::internals::commands::bake::{Args, settings_of};
 use tyndall::internals::geometry::Point;
 use tyndall::internals::layout::Layout;
@@ -50,7 +50,7 @@ fn bake(text: &str, words: &[String], height: f64) -> Result<(), Error> {
     let found = Args::augment_args(Command::new("bake")).try_get_matches_from(words).expect("known options");
     let args = Args::from_arg_matches(&found).expect("what the parser took");
     let settings = settings_of(&args, &planet).map_err(refused)?;
-    let lights = if is_fine() { Lights::default() } else { Lights::coarse() };
+    let lights = if is_fine() { SolutionCache::default() } else { SolutionCache::coarse() };
     let product = bake_in(&lights, &planet, &settings, &mut |_| {}).map_err(refused)?;
     settings.layouts.iter().for_each(|layout| sound(&product, height, *layout));
     Ok(())

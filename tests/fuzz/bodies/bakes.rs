@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
 use tyndall::internals::bake::recolour::{Source, Wanted, recolour};
-use tyndall::internals::bake::{self, Product, inputs};
+use tyndall::internals::bake::{self, Product, provenance};
 use tyndall::internals::colour::samples;
 use tyndall::internals::commands::{diff, verify};
 use tyndall::internals::files::Atlas;
@@ -24,7 +24,7 @@ use tyndall::internals::layout::sky::{self, AerosolPhase, Component, Sky};
 use tyndall::internals::layout::water::Waters;
 use tyndall::internals::layout::water::lookup::{WaterSky, WaterView};
 use tyndall::internals::preset::{self, Planet};
-use tyndall::internals::spectrum::{Beholder, ColourSpace, Rgb};
+use tyndall::internals::spectrum::{ColourSpace, Rgb, StandardObserver};
 use tyndall::internals::transport::solve::Orders;
 
 /// A small bake with a water, in memory and on disk.
@@ -215,8 +215,8 @@ pub fn folder(bytes: &[u8]) {
     }
     let manifest = Manifest::read(damaged).expect("what verify has read");
     verify::lost_or_changed(damaged, &manifest);
-    let asked = inputs::asked(&baked.planet, &baked.settings);
-    for change in inputs::differences(&inputs::recorded(&manifest), &asked) {
+    let asked = provenance::asked(&baked.planet, &baked.settings);
+    for change in provenance::differences(&provenance::recorded(&manifest), &asked) {
         one_line(&tyndall::internals::error::Line(change).to_string());
     }
     if let Err(error) = diff::compare(whole, damaged, 2) {
@@ -237,7 +237,7 @@ pub fn recoloured(bytes: &[u8]) {
     };
     let wanted = Wanted {
         star_k: Some(4000.0),
-        beholder: Beholder::default(),
+        beholder: StandardObserver::default(),
         rgb: Rgb { space: ColourSpace::Srgb, white: None },
     };
     match recolour(&source, &wanted) {

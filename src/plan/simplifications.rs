@@ -1,6 +1,6 @@
 //! What can be left out of a model, one step at a time.
 
-use super::lab::Lab;
+use super::evaluator::Evaluator;
 use super::model::Model;
 use crate::error::Result;
 use crate::layout::compact;
@@ -12,7 +12,7 @@ use crate::transport::solve::Orders;
 
 /// One thing to leave out.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Move {
+pub(super) enum Simplification {
     /// Altitudes and suns that the scene has not, and rays that meet the ground.
     Altitudes,
     Suns,
@@ -58,24 +58,24 @@ fn size_mut(model: &mut Model, kind: Kind) -> &mut [usize] {
     }
 }
 
-impl Move {
+impl Simplification {
     /// The windows of a scene: what it cannot meet.
-    pub(super) fn windows() -> [Move; 3] {
-        [Move::Altitudes, Move::Suns, Move::Ground]
+    pub(super) fn windows() -> [Simplification; 3] {
+        [Simplification::Altitudes, Simplification::Suns, Simplification::Ground]
     }
 
     /// Whole parts, and texels of every axis.
-    pub(super) fn parts(medium: &Medium) -> Vec<Move> {
+    pub(super) fn parts(medium: &Medium) -> Vec<Simplification> {
         let (groups, _) = groups_to_fold(medium, &[]);
-        let folds = groups.iter().map(|g| Move::Fold(medium.constituents[g[0]].name.clone()));
-        let mut out: Vec<Move> = folds.collect();
+        let folds = groups.iter().map(|g| Simplification::Fold(medium.constituents[g[0]].name.clone()));
+        let mut out: Vec<Simplification> = folds.collect();
         if medium.constituents.iter().any(|c| !c.scatters()) {
-            out.push(Move::Scatterers);
+            out.push(Simplification::Scatterers);
         }
-        out.extend([Move::Azimuth(Kind::Single), Move::Azimuth(Kind::Multiple)]);
+        out.extend([Simplification::Azimuth(Kind::Single), Simplification::Azimuth(Kind::Multiple)]);
         for kind in [Kind::Single, Kind::Multiple, Kind::Depth] {
             let axes = if kind == Kind::Depth { 2 } else { 4 };
-            out.extend((0..axes).map(|axis| Move::Shrink(kind, axis)));
+            out.extend((0..axes).map(|axis| Simplification::Shrink(kind, axis)));
         }
         out
     }
@@ -83,15 +83,15 @@ impl Move {
     /// What is left out, in words.
     pub(super) fn text(&self, scene: &Scene) -> String {
         match self {
-            Move::Altitudes => format!("altitudes but {}", heights(scene.altitudes)),
-            Move::Suns => format!("suns but {}", degrees(scene.suns)),
-            Move::Ground => "rays that meet the ground".into(),
-            Move::Azimuth(kind) => format!("{}: azimuth axis, for the mean", table(*kind)),
-            Move::Fold(name) => format!("table of what `{name}` scatters once"),
-            Move::Scatterers => "table of optical depth without absorbers".into(),
-            Move::Shrink(kind, axis) => format!("{}: {} texels", table(*kind), AXES[*axis]),
-            Move::Orders(n) => format!("orders of scattering after {n}"),
-            Move::Wavelengths(n) => format!("wavelengths but {n}"),
+            Simplification::Altitudes => format!("altitudes but {}", heights(scene.altitudes)),
+            Simplification::Suns => format!("suns but {}", degrees(scene.suns)),
+            Simplification::Ground => "rays that meet the ground".into(),
+            Simplification::Azimuth(kind) => format!("{}: azimuth axis, for the mean", table(*kind)),
+            Simplification::Fold(name) => format!("table of what `{name}` scatters once"),
+            Simplification::Scatterers => "table of optical depth without absorbers".into(),
+            Simplification::Shrink(kind, axis) => format!("{}: {} texels", table(*kind), AXES[*axis]),
+            Simplification::Orders(n) => format!("orders of scattering after {n}"),
+            Simplification::Wavelengths(n) => format!("wavelengths but {n}"),
         }
     }
 
@@ -99,40 +99,47 @@ impl Move {
     pub(super) fn sizes(&self, from: &Model, to: &Model) -> Option<[usize; 2]> {
         let of = |kind: Kind, axis: usize| [from, to].map(|m| size_of(m, kind)[axis]);
         match self {
-            Move::Shrink(kind, axis) => Some(of(*kind, *axis)),
-            Move::Azimuth(kind) => Some(of(*kind, 3)),
+            Simplification::Shrink(kind, axis) => Some(of(*kind, *axis)),
+            Simplification::Azimuth(kind) => Some(of(*kind, 3)),
             _ => None,
         }
     }
 
     /// The model without it; none where there is nothing to leave out.
-    pub(super) fn applied(&self, model: &Model, scene: &Scene, lab: &mut Lab) -> Result<Option<Model>> {
+    pub(super) fn applied(
+        &self,
+        model: &Model,
+        scene: &Scene,
+        evaluator: &mut Evaluator,
+    ) -> Result<Option<Model>> {
         let mut out = model.clone();
         let full = Model::default();
         match self {
-            Move::Altitudes => out.window.altitudes = Some(scene.altitudes),
-            Move::Suns => out.window.suns = Some(scene.suns),
-            Move::Ground if scene.elevations[0] < 0.0 || model.window.views == Views::Sky => return Ok(None),
-            Move::Ground => out.window.views = Views::Sky,
-            Move::Azimuth(kind) => size_mut(&mut out, *kind)[3] = 1,
-            Move::Fold(name) => out.design.folded.push(name.clone()),
-            Move::Scatterers => out.design.without_scatterers = true,
-            Move::Shrink(kind, axis) => {
+            Simplification::Altitudes => out.window.altitudes = Some(scene.altitudes),
+            Simplification::Suns => out.window.suns = Some(scene.suns),
+            Simplification::Ground if scene.elevations[0] < 0.0 || model.window.views == Views::Sky => {
+                return Ok(None);
+            }
+            Simplification::Ground => out.window.views = Views::Sky,
+            Simplification::Azimuth(kind) => size_mut(&mut out, *kind)[3] = 1,
+            Simplification::Fold(name) => out.design.folded.push(name.clone()),
+            Simplification::Scatterers => out.design.without_scatterers = true,
+            Simplification::Shrink(kind, axis) => {
                 let fewer = fewer(size_of(model, *kind)[*axis], least(*kind, *axis, &model.window));
                 size_mut(&mut out, *kind)[*axis] =
                     if *axis == 1 { even(fewer, &model.window) } else { fewer };
             }
-            Move::Orders(n) => out.orders = Orders::First(*n),
-            Move::Wavelengths(n) => out.wavelengths = *n,
+            Simplification::Orders(n) => out.orders = Orders::First(*n),
+            Simplification::Wavelengths(n) => out.wavelengths = *n,
         }
-        if matches!(self, Move::Altitudes | Move::Suns | Move::Ground) {
-            fit(&mut out, &full.design.sizes, lab.medium(&full)?);
+        if matches!(self, Simplification::Altitudes | Simplification::Suns | Simplification::Ground) {
+            fit(&mut out, &full.design.sizes, evaluator.medium(&full)?);
             // A window that saves no texel is none.
             if out.design.sizes == model.design.sizes {
                 return Ok(None);
             }
         }
-        let twice = matches!(self, Move::Fold(name) if model.design.folded.contains(name));
+        let twice = matches!(self, Simplification::Fold(name) if model.design.folded.contains(name));
         Ok((out != *model && !twice).then_some(out))
     }
 }
@@ -159,7 +166,8 @@ fn even(n: usize, window: &Window) -> usize {
 /// Sizes as close in the window as without one.
 fn fit(model: &mut Model, full: &Sizes, medium: &Medium) {
     let window = model.window;
-    let whole = Model { design: compact::Design { sizes: *full, ..Default::default() }, ..Model::default() };
+    let whole =
+        Model { design: compact::CompactSettings { sizes: *full, ..Default::default() }, ..Model::default() };
     for kind in [Kind::Single, Kind::Multiple, Kind::Depth] {
         let Some(mapping) = compact::mapping(medium, kind, [1, 2, 1, 1], &window) else { continue };
         let [altitude, sun] = mapping.spans();

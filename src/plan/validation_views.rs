@@ -30,7 +30,7 @@ enum Look {
 }
 
 /// Views and the truth about them.
-pub(super) struct Judge {
+pub(super) struct ValidationViews {
     views: Vec<Look>,
     /// XYZ over the star's illuminance, 1/sr.
     truth: Vec<[f64; 3]>,
@@ -121,9 +121,9 @@ impl Truth<'_> {
     }
 }
 
-impl Judge {
+impl ValidationViews {
     /// Views of a scene under a seed, with their truth.
-    pub(super) fn new(scene: &Scene, truth: &Truth, count: usize, seed: u32) -> Judge {
+    pub(super) fn new(scene: &Scene, truth: &Truth, count: usize, seed: u32) -> ValidationViews {
         let [ground, top] = [truth.medium.ground_radius, truth.medium.top_radius];
         let around = |(k, p): (usize, Point)| -> Look {
             if k % SUNWARD == SUNWARD - 1 && p.altitude < top - ground {
@@ -142,7 +142,7 @@ impl Judge {
         let colours: Vec<[f64; 3]> = points.par_iter().map(|p| truth.colour(p, illuminance)).collect();
         let lit = points.into_iter().zip(colours).filter(|(_, xyz)| xyz[1] > NIGHT);
         let (views, truth) = lit.unzip();
-        Judge { views, truth, space: ColourSpace::Srgb, tolerance: scene.tolerance }
+        ValidationViews { views, truth, space: ColourSpace::Srgb, tolerance: scene.tolerance }
     }
 
     pub(super) fn is_empty(&self) -> bool {

@@ -1,17 +1,17 @@
 //! Measures models: the light is solved once, tables are filled when a model has others than those before it.
 
-use super::judge::{Errors, Judge};
 use super::model::{Cost, Model};
+use super::validation_views::{Errors, ValidationViews};
 use crate::bake::describe;
 use crate::bake::files::Files;
 use crate::colour::samples as skies;
-use crate::colour::weights::Palette;
+use crate::colour::weights::ColourWeights;
 use crate::error::{Error, Result};
 use crate::layout::compact;
-use crate::layout::compact::Maker;
+use crate::layout::compact::CompactBuilder;
 use crate::layout::settings::Settings;
 use crate::layout::sky::{self, Sky};
-use crate::layout::table_data::Baked;
+use crate::layout::table_data::TableData;
 use crate::mapping::Window;
 use crate::medium::Medium;
 use crate::preset::Planet;
@@ -28,22 +28,22 @@ struct Light {
     medium: Medium,
     solution: Solution,
     /// Colours that suit a window.
-    palettes: Vec<(Window, Rc<Palette>)>,
+    palettes: Vec<(Window, Rc<ColourWeights>)>,
 }
 
 /// Where models are measured.
-pub(super) struct Lab<'a> {
+pub(super) struct Evaluator<'a> {
     planet: &'a Planet,
     base: Settings,
     lights: Vec<Light>,
     /// By all that they depend on, the newest last.
-    tables: Vec<(String, Rc<Vec<Baked>>)>,
+    tables: Vec<(String, Rc<Vec<TableData>>)>,
     pub measured: usize,
 }
 
-impl<'a> Lab<'a> {
+impl<'a> Evaluator<'a> {
     pub(super) fn new(planet: &'a Planet) -> Self {
-        Lab { planet, base: Settings::default(), lights: Vec::new(), tables: Vec::new(), measured: 0 }
+        Evaluator { planet, base: Settings::default(), lights: Vec::new(), tables: Vec::new(), measured: 0 }
     }
 
     fn light(&mut self, model: &Model) -> Result<usize> {
@@ -77,27 +77,27 @@ impl<'a> Lab<'a> {
     }
 
     /// The light of a model, and the colours that suit its window.
-    pub(super) fn lit(&mut self, model: &Model) -> Result<(&Medium, &Solution, Rc<Palette>)> {
+    pub(super) fn lit(&mut self, model: &Model) -> Result<(&Medium, &Solution, Rc<ColourWeights>)> {
         let light = self.light(model)?;
         let palette = self.palette(light, &model.window)?;
         let Light { medium, solution, .. } = &self.lights[light];
         Ok((medium, solution, palette))
     }
 
-    fn palette(&mut self, light: usize, window: &Window) -> Result<Rc<Palette>> {
+    fn palette(&mut self, light: usize, window: &Window) -> Result<Rc<ColourWeights>> {
         if let Some((_, palette)) = self.lights[light].palettes.iter().find(|p| p.0 == *window) {
             return Ok(palette.clone());
         }
         let Light { medium, solution, .. } = &self.lights[light];
         let sample = [0.0, 1.0].map(|half| skies::sample(solution, medium, half, window));
         let (irradiance, rgb) = (&self.planet.star.irradiance, &self.base.rgb);
-        let palette = Rc::new(Palette::fit(&medium.wavelengths_nm, irradiance, rgb, &sample)?);
+        let palette = Rc::new(ColourWeights::fit(&medium.wavelengths_nm, irradiance, rgb, &sample)?);
         self.lights[light].palettes.push((*window, palette.clone()));
         Ok(palette)
     }
 
     /// Some tables of a model, filled or remembered. `key` says which, with all that they depend on.
-    fn tables(&mut self, key: String, make: impl FnOnce() -> Vec<Baked>) -> Rc<Vec<Baked>> {
+    fn tables(&mut self, key: String, make: impl FnOnce() -> Vec<TableData>) -> Rc<Vec<TableData>> {
         if let Some(k) = self.tables.iter().position(|t| t.0 == key) {
             let found = self.tables.remove(k);
             self.tables.push(found);
@@ -119,7 +119,8 @@ impl<'a> Lab<'a> {
         let sizes = &design.sizes;
         // Lent out for the time that tables are made from it.
         let Light { orders, medium, solution, palettes } = self.lights.swap_remove(light);
-        let maker = Maker { medium: &medium, solution: &solution, palette: &palette, design, window };
+        let maker =
+            CompactBuilder { medium: &medium, solution: &solution, palette: &palette, design, window };
         let of = format!("{orders:?} {} {window:?} {}", model.wavelengths, design.without_scatterers);
         let parts = [
             self.tables(format!("single {:?} {:?} {of}", sizes.single, design.folded), || maker.singles()),
@@ -139,7 +140,7 @@ impl<'a> Lab<'a> {
     }
 
     /// How a model does on some views.
-    pub(super) fn measure(&mut self, model: &Model, judge: &Judge) -> Result<Errors> {
+    pub(super) fn measure(&mut self, model: &Model, judge: &ValidationViews) -> Result<Errors> {
         Ok(judge.errors(self.sky(model)?.as_ref()))
     }
 

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 /// Solutions of the bakes before, the last `MOST`.
 #[derive(Default)]
-pub struct Lights {
+pub struct SolutionCache {
     kept: Mutex<Vec<Kept>>,
     coarse: bool,
 }
@@ -30,10 +30,10 @@ pub struct Solved {
 /// Of a planet with many wavelengths each has some hundreds of megabytes.
 const MOST: usize = 2;
 
-impl Lights {
+impl SolutionCache {
     /// Light solved as coarsely as can be: for tests of everything but its accuracy.
     pub fn coarse() -> Self {
-        Lights { coarse: true, ..Lights::default() }
+        SolutionCache { coarse: true, ..SolutionCache::default() }
     }
 
     /// The light in a medium: that of a bake before, or solved now.
@@ -88,7 +88,7 @@ mod tests {
         let (one, other) = (planet.medium(&[550.0]), planet.medium(&[551.0]));
         let small = Resolution { sun_nodes: 8, zeniths: 4, sunlight_nodes: 16, ..Resolution::PAPER };
         let finer = Resolution { sun_nodes: 9, ..small };
-        let lights = Lights::default();
+        let lights = SolutionCache::default();
         let solve = |medium: &Medium, resolution: &Resolution, orders: usize| {
             lights.of(medium, resolution, Orders::First(orders)).light
         };

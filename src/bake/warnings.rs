@@ -1,7 +1,7 @@
 //! What the quality report says that a user must hear: tables or a medium that miss the planet's own day, and colours
 //! that miss its own.
 
-use crate::colour::weights::{ColourError, Palette};
+use crate::colour::weights::{ColourError, ColourWeights};
 use crate::layout::{self, Layout};
 use serde_json::{Map, Value};
 
@@ -19,7 +19,7 @@ const COLOUR_WARNING: f64 = 3.0;
 
 /// A warning where the wavelengths, or the four that tables keep of them, do not span what eyes see, or where the four
 /// give other colours than all.
-pub(super) fn colours(palette: &Palette) -> Option<String> {
+pub(super) fn colours(palette: &ColourWeights) -> Option<String> {
     let four = palette.four_nm();
     if four.len() < 3 {
         return None; // Too few for any colour, of which the bake warns.
