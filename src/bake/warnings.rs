@@ -5,7 +5,8 @@ use crate::colour::weights::{ColourError, ColourWeights};
 use crate::layout::{self, Layout};
 use serde_json::{Map, Value};
 
-/// Error of the tables of a layout on 95 % of views by day, or of those near the horizon by day, above which the bake warns: five times that of the paper's.
+/// Error of a layout's tables on 95 % of the views by day, or of those near the horizon by day, above which the bake
+/// warns: five times that of the paper's.
 const TABLES_WARNING: f64 = 0.3;
 /// Median error by day of the paper's layout against the preset's own medium above which the bake warns.
 const MEDIUM_WARNING: f64 = 0.25;

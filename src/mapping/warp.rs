@@ -2,7 +2,7 @@
 
 use super::layer::Layer;
 
-/// Bends of the axes of Elek & Kmoch 2010 §4.1.
+/// How the axes of Elek & Kmoch 2010 §4.1 are warped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Warp {
     /// Above 0, the altitude axis is finer near the ground by the factor 1 + bend, and coarser near the top by
