@@ -3,8 +3,8 @@
 use clap::Parser;
 #[cfg(feature = "chart")]
 use tyndall::internals::commands::chart;
+use tyndall::internals::commands::share_threads;
 use tyndall::internals::commands::{bake, colour, diff, plan, presets, recolour, reference, sample, verify};
-use tyndall::internals::commands::{refused, share_threads};
 use tyndall::internals::files::signals::handle_interrupts;
 use tyndall::internals::machine::output;
 
@@ -33,7 +33,7 @@ enum Command {
 fn main() -> std::process::ExitCode {
     let result = match Command::try_parse() {
         Ok(command) => handle_interrupts().and_then(|()| run(command)).and_then(|()| output::heard()),
-        Err(error) => refused(&error),
+        Err(error) => output::refused(&error),
     };
     match result {
         Ok(()) => std::process::ExitCode::SUCCESS,

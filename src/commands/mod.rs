@@ -22,4 +22,3 @@ mod text;
 pub mod verify;
 
 pub use machine::share_threads;
-pub use text::refused;

@@ -1,21 +1,6 @@
 //! Numbers as text, and where text goes.
 
-use crate::error::Result;
-use crate::machine::output::written;
 pub(super) use crate::machine::output::{print, say, stream, watched};
-use std::io::{self, Write};
-
-/// Tells of arguments that are none of a command, and ends the program; of `--help` and `--version`, which are answers,
-/// it says whether they could be written.
-///
-/// # Errors
-/// As [`print`].
-pub fn refused(error: &clap::Error) -> Result<()> {
-    if error.use_stderr() {
-        error.exit();
-    }
-    written(error.print().and_then(|()| io::stdout().flush()))
-}
 
 /// A number to nine significant digits: plain where that is short, else with an exponent.
 pub(super) fn number(v: f64) -> String {

@@ -17,8 +17,20 @@ pub fn print(text: &str) -> Result<()> {
     stream(|out| out.write_all(text.as_bytes()))
 }
 
-/// What became of writing to standard output, where a closed pipe is no failure.
-pub(crate) fn written(outcome: io::Result<()>) -> Result<()> {
+/// Tells of arguments that are none of a command, and ends the program; of `--help` and `--version`, which are answers,
+/// it says whether they could be written.
+///
+/// # Errors
+/// As [`print`].
+#[cfg(feature = "cli")]
+pub fn refused(error: &clap::Error) -> Result<()> {
+    if error.use_stderr() {
+        error.exit();
+    }
+    written(error.print().and_then(|()| io::stdout().flush()))
+}
+
+fn written(outcome: io::Result<()>) -> Result<()> {
     match outcome {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Error::machine("standard output", e)),
         _ => Ok(()),

@@ -35,7 +35,7 @@ fn main() -> std::process::ExitCode {
     hush();
     let result = match Options::try_parse() {
         Ok(options) => run(&options).and_then(|()| output::heard()),
-        Err(error) => tyndall::internals::commands::refused(&error),
+        Err(error) => output::refused(&error),
     };
     match result {
         Ok(()) => std::process::ExitCode::SUCCESS,
