@@ -16,5 +16,6 @@ pub mod versions;
 mod warnings;
 
 pub use pipeline::{bake, bake_in, check_folded};
+pub(crate) use product::IN_MEMORY;
 pub use product::Product;
 pub use solution_cache::SolutionCache;

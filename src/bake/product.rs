@@ -1,16 +1,16 @@
 //! A finished bake in memory: its files, to be written or looked up in.
 
 use crate::error::{Error, Result};
-use crate::files::exr;
 use crate::files::manifest::Manifest;
 use crate::files::staging::Staging;
+use crate::files::{Atlas, exr};
 use crate::layout::sky::{self, Sky};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
 /// What messages call a bake that is in no folder yet.
-pub(super) const IN_MEMORY: &str = "the bake in memory";
+pub(crate) const IN_MEMORY: &str = "the bake in memory";
 
 /// A finished bake in memory: every file of it, `bake.json` included, and the manifest as a value.
 pub struct Product {
@@ -44,17 +44,28 @@ impl Product {
     /// # Errors
     /// `Argument` for a layout that was not baked.
     pub fn sky(&self, layout: &str) -> Result<Box<dyn Sky>> {
-        let files: BTreeMap<&str, &[u8]> =
-            self.files.iter().map(|(file, bytes)| (file.as_str(), bytes.as_slice())).collect();
-        let tables: Vec<_> = self.manifest.tables.iter().filter(|t| t.layout == layout).collect();
-        if tables.is_empty() {
+        let pictures = self.pictures(layout)?;
+        if pictures.is_empty() {
             return Err(Error::Argument(format!("layout {layout}: not in this bake")));
         }
-        let mut pictures = BTreeMap::new();
-        for table in tables {
-            let atlas = exr::from_exr_bytes(Path::new(&table.file), files[table.file.as_str()])?;
-            pictures.insert(table.name.clone(), atlas);
-        }
         sky::of_pictures(Path::new(IN_MEMORY), &self.manifest, layout, &pictures)
+    }
+
+    /// The decoded tables of a layout, by name; none where it was not baked.
+    ///
+    /// # Errors
+    /// `File` for a table that `files` has not, or not as EXR.
+    pub fn pictures(&self, layout: &str) -> Result<BTreeMap<String, Atlas>> {
+        let files: BTreeMap<&str, &[u8]> =
+            self.files.iter().map(|(file, bytes)| (file.as_str(), bytes.as_slice())).collect();
+        let tables = self.manifest.tables.iter().filter(|t| t.layout == layout);
+        tables
+            .map(|table| {
+                let path = Path::new(&table.file);
+                let bytes =
+                    files.get(table.file.as_str()).ok_or_else(|| Error::file(path, "not in this bake"))?;
+                Ok((table.name.clone(), exr::from_exr_bytes(path, bytes)?))
+            })
+            .collect()
     }
 }

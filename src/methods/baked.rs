@@ -1,10 +1,10 @@
 //! Tables of a bake, read as an engine reads them: this project's layouts, and others' tables that its baker fills.
 
 use super::{Family, Method, Prepared, PreparedSky};
-use crate::bake::{Product, SolutionCache, bake_in};
+use crate::bake::{IN_MEMORY, Product, SolutionCache, bake_in};
 use crate::error::{Error, Result};
 use crate::files::manifest::{Encoding, EncodingKind, Manifest, Table};
-use crate::files::{Atlas, Samples, exr};
+use crate::files::{Atlas, Samples};
 use crate::geometry::Point;
 use crate::geometry::view::View;
 use crate::layout::Layout;
@@ -13,7 +13,6 @@ use crate::layout::sky::{self, Component, Sky};
 use crate::layout::three_atmosphere::lookup::ThreeAtmosphere;
 use crate::machine::cpu_time::cpu_time;
 use crate::preset::Planet;
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
@@ -106,15 +105,12 @@ struct Tables {
 impl Tables {
     fn open(product: Product, layout: &str, storage: Storage) -> Result<Self> {
         let mut manifest = product.manifest.clone();
-        let files: BTreeMap<&str, &[u8]> =
-            product.files.iter().map(|(f, b)| (f.as_str(), b.as_slice())).collect();
-        let mut pictures = BTreeMap::new();
+        let mut pictures = product.pictures(layout)?;
         for table in manifest.tables.iter_mut().filter(|t| t.layout == layout) {
-            let mut atlas = exr::from_exr_bytes(Path::new(&table.file), files[table.file.as_str()])?;
-            store(table, &mut atlas, storage);
-            pictures.insert(table.name.clone(), atlas);
+            let atlas = pictures.get_mut(&table.name).expect("a picture for each table");
+            store(table, atlas, storage);
         }
-        let bake = Path::new("the bake in memory");
+        let bake = Path::new(IN_MEMORY);
         let sky: Box<dyn Sky> = match storage {
             Storage::RedOfMie => {
                 let ratio = mie_over_rayleigh(&product)?;

@@ -13,7 +13,7 @@ use tyndall::internals::geometry::Point;
 use tyndall::internals::layout::Layout;
 use tyndall::internals::layout::sky::{AerosolPhase, Channels, Component, Sky};
 use tyndall::internals::preset;
-use tyndall::internals::spectrum::{ColourSpace, multiply};
+use tyndall::internals::spectrum::ColourSpace;
 
 pub fn any_bake(bytes: &[u8]) {
     let mut choices = Choices::new(bytes);
@@ -236,8 +236,11 @@ fn sound(product: &Product, height: f64, layout: &'static dyn Layout) {
     }
 }
 
-/// Whether an answer is light: no wavelength is negative; no luminance is, where it is a colour, whose single channels
-/// are negative outside the colour space's gamut.
+/// Rounding of halves, relative to the parts of a sum: a step is 2^-10, and two tables are added.
+const ROUNDING: f64 = 2e-3;
+
+/// Whether an answer is light: no wavelength is negative. A colour may lie outside the gamut of its space, where a
+/// channel is negative; its X, Y and Z are integrals of light over functions that are nowhere negative.
 fn is_light(light: &[f64], sky: &dyn Sky, product: &Product) -> bool {
     match sky.channels() {
         Channels::Wavelengths(_) => light.iter().copied().all(good),
@@ -245,10 +248,12 @@ fn is_light(light: &[f64], sky: &dyn Sky, product: &Product) -> bool {
             let name = &product.manifest.colour.space;
             let space =
                 ColourSpace::ALL.into_iter().find(|space| space.name() == name).expect("a colour space");
-            light.len() == 3 && light.iter().all(|v| v.is_finite()) && {
-                let luminance = multiply(&space.to_xyz(), [light[0], light[1], light[2]])[1];
-                good(luminance)
-            }
+            let is_positive = |row: [f64; 3]| {
+                let parts: Vec<f64> = row.iter().zip(light).map(|(weight, v)| weight * v).collect();
+                let size: f64 = parts.iter().map(|part| part.abs()).sum();
+                size.is_finite() && parts.iter().sum::<f64>() >= -ROUNDING * size
+            };
+            light.len() == 3 && space.to_xyz().into_iter().all(is_positive)
         }
     }
 }

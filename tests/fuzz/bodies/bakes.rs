@@ -96,10 +96,7 @@ fn pictures(product: &Product) -> BTreeMap<String, BTreeMap<String, Atlas>> {
 
 /// The sky of a layout of a bake in memory.
 pub fn opened(product: &Product, layout: &dyn Layout) -> Box<dyn Sky> {
-    let empty = BTreeMap::new();
-    let pictures = pictures(product);
-    let of_layout = pictures.get(layout.name()).unwrap_or(&empty);
-    sky::of_pictures(file(), &product.manifest, layout.name(), of_layout).expect("a layout of the bake")
+    product.sky(layout.name()).expect("a layout of the bake")
 }
 
 fn bytes_of<'a>(product: &'a Product, name: &str) -> &'a [u8] {
